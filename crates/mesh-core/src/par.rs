@@ -1,0 +1,76 @@
+//! The only place that starts threads: maps over slices whose results do not depend on the number
+//! of threads, because every output is written by exactly one pure call.
+//!
+//! With one thread in the pool (or little work) the loops run in the caller, at no extra cost.
+
+use rayon::prelude::*;
+
+/// Below this many items a parallel loop costs more than it saves.
+const SERIAL_BELOW: usize = 256;
+
+/// True if a loop of `n` items should be spread over threads.
+fn worth_it(n: usize) -> bool {
+    n >= SERIAL_BELOW && rayon::current_num_threads() > 1
+}
+
+/// Sets every `out[i] = f(i)`.
+pub fn fill<T: Send>(out: &mut [T], f: impl Fn(usize) -> T + Sync) {
+    if worth_it(out.len()) {
+        out.par_iter_mut().with_min_len(64).enumerate().for_each(|(i, slot)| *slot = f(i));
+    } else {
+        for (i, slot) in out.iter_mut().enumerate() {
+            *slot = f(i);
+        }
+    }
+}
+
+/// Calls `f(i, &mut out[i])` for every item.
+pub fn for_each<T: Send>(out: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
+    if worth_it(out.len()) {
+        out.par_iter_mut().with_min_len(64).enumerate().for_each(|(i, slot)| f(i, slot));
+    } else {
+        for (i, slot) in out.iter_mut().enumerate() {
+            f(i, slot);
+        }
+    }
+}
+
+/// Sum of `f(i)` over `0..n`, in blocks of fixed size added in order: the same bits at any number
+/// of threads.
+pub fn sum(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
+    const BLOCK: usize = 1024;
+    let block = |b: usize| (b * BLOCK..((b + 1) * BLOCK).min(n)).map(&f).sum::<f64>();
+    let mut partial = vec![0.0; n.div_ceil(BLOCK)];
+    if worth_it(n) {
+        partial.par_iter_mut().enumerate().for_each(|(b, slot)| *slot = block(b));
+    } else {
+        for (b, slot) in partial.iter_mut().enumerate() {
+            *slot = block(b);
+        }
+    }
+    partial.iter().sum()
+}
+
+/// Runs two closures, at the same time if there is a second thread.
+pub fn join<A: Send, B: Send>(
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if rayon::current_num_threads() > 1 { rayon::join(a, b) } else { (a(), b()) }
+}
+
+/// Number of threads that the maps use.
+pub fn n_threads() -> usize {
+    rayon::current_num_threads()
+}
+
+/// Runs `work` with exactly `n` threads (0: one per core).
+///
+/// # Errors
+/// If the operating system refuses the threads.
+pub fn with_threads<R: Send>(
+    n: usize,
+    work: impl FnOnce() -> R + Send,
+) -> Result<R, rayon::ThreadPoolBuildError> {
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(n).build()?.install(work))
+}
