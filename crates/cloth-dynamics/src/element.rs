@@ -1,0 +1,152 @@
+//! Energies that are sums over small stencils: the loop, the threads and the ordered sum live here
+//! once, so that a new energy contains no parallel line.
+
+use crate::force::{Force, Stage};
+use crate::solver::{
+    ABSENT, BlockMatrix, BlockPattern, PatternBuilder, PatternError, StencilSlots,
+};
+use mesh_core::{World3, par};
+use nalgebra::Matrix3;
+
+/// Gradient and stiffness of one element.
+#[derive(Clone, Debug)]
+pub struct ElementSystem<const N: usize> {
+    /// Gradient of the energy at each corner (N).
+    pub gradient: [World3; N],
+    /// Stiffness blocks (N/m); only `[a][b]` with a ≥ b is read.
+    pub stiffness: [[Matrix3<f64>; N]; N],
+    /// False if everything is zero, so that nothing needs to be added.
+    pub active: bool,
+}
+
+impl<const N: usize> ElementSystem<N> {
+    /// All zero.
+    pub fn zero() -> Self {
+        ElementSystem {
+            gradient: [World3::zeros(); N],
+            stiffness: [[Matrix3::zeros(); N]; N],
+            active: false,
+        }
+    }
+}
+
+/// Which second derivative is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stiffness {
+    /// The exact Hessian, for checks; may be indefinite.
+    Exact,
+    /// Positive semi-definite, for the solver.
+    Projected,
+}
+
+/// What a modeller writes: an energy on stencils of `N` vertices. Pure and serial.
+pub trait ElementModel<const N: usize>: Send + Sync {
+    /// A short name for reports.
+    fn name(&self) -> &'static str;
+
+    /// The vertices of every element; [`ABSENT`] where there is none.
+    fn stencils(&self) -> &[[u32; N]];
+
+    /// Takes what the energy lags from the start of the stage.
+    fn begin(&mut self, stage: Stage<'_>);
+
+    /// Energy of element `e` (J) with its corners at `x` (m). Absent corners are at the origin.
+    fn energy(&self, e: usize, x: &[World3; N]) -> f64;
+
+    /// Gradient at the corners (N).
+    fn gradient(&self, e: usize, x: &[World3; N]) -> [World3; N];
+
+    /// Gradient and stiffness into `out`, which may hold old values.
+    fn system(&self, e: usize, x: &[World3; N], kind: Stiffness, out: &mut ElementSystem<N>);
+}
+
+/// A [`Force`] made of the elements of one model.
+#[derive(Debug)]
+pub struct Elements<M, const N: usize> {
+    model: M,
+    slots: Option<StencilSlots<N>>,
+}
+
+/// Elements whose systems are computed side by side before they are added in order: small enough
+/// to stay in the cache.
+const BATCH: usize = 256;
+
+impl<M: ElementModel<N>, const N: usize> Elements<M, N> {
+    /// All elements of a model.
+    pub fn new(model: M) -> Self {
+        Elements { model, slots: None }
+    }
+
+    /// The model.
+    pub fn model(&self) -> &M {
+        &self.model
+    }
+
+    fn corners(&self, e: usize, x: &[World3]) -> [World3; N] {
+        self.model.stencils()[e].map(|i| if i == ABSENT { World3::zeros() } else { x[i as usize] })
+    }
+
+    fn scatter(&self, e: usize, from: &[World3; N], to: &mut [World3]) {
+        for (&i, g) in self.model.stencils()[e].iter().zip(from) {
+            if i != ABSENT {
+                to[i as usize] += g;
+            }
+        }
+    }
+}
+
+impl<M: ElementModel<N>, const N: usize> Force for Elements<M, N> {
+    fn name(&self) -> &'static str {
+        self.model.name()
+    }
+
+    fn couple(&self, pattern: &mut PatternBuilder) -> Result<(), PatternError> {
+        pattern.add(self.model.stencils())
+    }
+
+    fn bind(&mut self, pattern: &BlockPattern) {
+        self.slots = StencilSlots::new(pattern, self.model.stencils());
+    }
+
+    fn begin(&mut self, stage: Stage<'_>) {
+        self.model.begin(stage);
+    }
+
+    fn energy(&self, x: &[World3]) -> f64 {
+        let n = self.model.stencils().len();
+        par::sum(n, |e| self.model.energy(e, &self.corners(e, x)))
+    }
+
+    fn add_gradient(&self, x: &[World3], gradient: &mut [World3]) {
+        let n = self.model.stencils().len();
+        let mut batch = vec![[World3::zeros(); N]; n.min(8 * BATCH)];
+        for first in (0..n).step_by(8 * BATCH) {
+            let count = (n - first).min(8 * BATCH);
+            par::fill(&mut batch[..count], |k| {
+                self.model.gradient(first + k, &self.corners(first + k, x))
+            });
+            for (k, g) in batch[..count].iter().enumerate() {
+                self.scatter(first + k, g, gradient);
+            }
+        }
+    }
+
+    fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {
+        let slots = self.slots.as_ref().expect("bind() comes before add_system()");
+        let n = self.model.stencils().len();
+        let mut batch = vec![ElementSystem::<N>::zero(); n.min(BATCH)];
+        for first in (0..n).step_by(BATCH) {
+            let count = (n - first).min(BATCH);
+            par::for_each(&mut batch[..count], |k, out| {
+                let e = first + k;
+                self.model.system(e, &self.corners(e, x), Stiffness::Projected, out);
+            });
+            for (k, system) in batch[..count].iter().enumerate() {
+                if system.active {
+                    self.scatter(first + k, &system.gradient, gradient);
+                    slots.scatter(first + k, &system.stiffness, stiffness);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Implicit Euler: first order, strongly damped.
+
+use super::{StageStart, Step, TimeIntegrator, solve_stage};
+use crate::newton::{NewtonSettings, SolveError, SolveReport};
+use crate::solver::LinearSolver;
+use crate::system::{Constraints, System};
+use mesh_core::ClothState;
+
+/// x₁ = x₀ + h v₁, M (v₁ − v₀) = h f(x₁, v₁).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ImplicitEuler;
+
+impl TimeIntegrator for ImplicitEuler {
+    fn advance(
+        &mut self,
+        cloth: &mut ClothState,
+        system: &mut System,
+        solver: &mut dyn LinearSolver,
+        constraints: &dyn Fn(f64) -> Constraints,
+        settings: &NewtonSettings,
+        Step { time, h }: Step,
+    ) -> Result<SolveReport, SolveError> {
+        let time = time + h;
+        let start = StageStart {
+            x_t0: &cloth.x,
+            base: &cloth.x,
+            velocity: &cloth.v,
+            h,
+            time,
+            constraints: constraints(time),
+        };
+        let (x, report) = solve_stage(cloth, system, solver, settings, start)?;
+        for ((v, x_t1), x_t0) in cloth.v.iter_mut().zip(&x).zip(&cloth.x) {
+            *v = (x_t1 - x_t0) / h;
+        }
+        cloth.x = x;
+        Ok(report)
+    }
+}

@@ -1,0 +1,163 @@
+//! The measured, data-driven stretching of Wang, O'Brien and Ramamoorthi 2011.
+//!
+//! A file gives the stiffness tensor for small strain (row 0) and, at a stretch of 7/6, for five
+//! directions of the largest stretch (0°, 22.5°, 45°, 67.5°, 90° from the warp). The measured law is
+//! a stress K(E) E; it is not the gradient of any energy. We take the potential
+//!
+//!   ψ(E) = ∫₀¹ E : K(tE) : t E dt = q₀(E) + 2 W(e) (Q(E, c) − q₀(E)),
+//!
+//! whose stress along the direction of loading is the measured one, so that steps have an energy
+//! that cannot rise. Here q are the quadratic forms ½ E:K:E of the rows, e the largest principal
+//! strain, c = cos 2θ its direction, and W the integral of the linear ramp between the two
+//! amplitudes. Between directions the rows are blended with smooth convex weights in c.
+
+use super::{Law, Response};
+use nalgebra::{Matrix3, Vector3};
+
+/// Largest principal Green strain at which the directional rows hold: a stretch of 7/6.
+const RAMP: f64 = 0.5 * (49.0 / 36.0 - 1.0);
+/// Rounds off the corner where both principal strains agree and no direction is largest.
+const ROUND: f64 = 5e-3;
+/// cos 2θ of the five measured directions.
+const DIRECTIONS: [f64; 5] =
+    [1.0, std::f64::consts::FRAC_1_SQRT_2, 0.0, -std::f64::consts::FRAC_1_SQRT_2, -1.0];
+
+/// Data-driven stretching.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasuredMembrane {
+    rows: [Matrix3<f64>; 6],
+    /// How many rows had to be changed to be positive semi-definite.
+    repaired: usize,
+}
+
+/// A blend of directional rows: value and derivatives with respect to c.
+struct Blend {
+    /// The two rows and the weight of the second.
+    rows: [usize; 2],
+    w: f64,
+    dw: f64,
+    ddw: f64,
+}
+
+impl MeasuredMembrane {
+    /// From the six rows (C11, C12, C22, C33) of a file, in N/m as written there, each multiplied
+    /// by `scale`. The file's tensor convention doubles all constants against ours, where the shear
+    /// constant multiplies the engineering strain 2 E₁₂ (see `docs/decisions.md`). Rows that are
+    /// not positive semi-definite (several published ones are not) are projected.
+    pub fn new(table: &[[f64; 4]; 6], scale: f64) -> Self {
+        let mut repaired = 0;
+        let rows = table.map(|[c11, c12, c22, c33]| {
+            let [a, c, s] = [2.0 * c11, 2.0 * c22, c33].map(|k| (k * scale).max(0.0));
+            let limit = 0.99 * (a * c).sqrt();
+            let b = (2.0 * c12 * scale).clamp(-limit, limit);
+            if a != 2.0 * c11 * scale || c != 2.0 * c22 * scale || s != c33 * scale
+                || b != 2.0 * c12 * scale
+            {
+                repaired += 1;
+            }
+            Matrix3::new(a, b, 0.0, b, c, 0.0, 0.0, 0.0, s)
+        });
+        MeasuredMembrane { rows, repaired }
+    }
+
+    /// How many of the six rows were not positive semi-definite and were projected.
+    pub fn repaired_rows(&self) -> usize {
+        self.repaired
+    }
+
+    fn blend(c: f64) -> Blend {
+        let k = DIRECTIONS[1..4].iter().take_while(|&&node| c < node).count();
+        let width = DIRECTIONS[k + 1] - DIRECTIONS[k];
+        let t = (c - DIRECTIONS[k]) / width;
+        // Quintic smoothstep: the second derivative is continuous at the measured directions.
+        Blend {
+            rows: [k + 1, k + 2],
+            w: t * t * t * (10.0 + t * (6.0 * t - 15.0)),
+            dw: 30.0 * t * t * (1.0 + t * (t - 2.0)) / width,
+            ddw: 60.0 * t * (1.0 + t * (2.0 * t - 3.0)) / (width * width),
+        }
+    }
+
+    /// 2 W and its first two derivatives with respect to the largest principal strain.
+    fn ramp(e: f64) -> [f64; 3] {
+        if e <= 0.0 {
+            [0.0; 3]
+        } else if e < RAMP {
+            [2.0 * e / (3.0 * RAMP), 2.0 / (3.0 * RAMP), 0.0]
+        } else {
+            let q = RAMP * RAMP / (e * e);
+            [1.0 - q / 3.0, 2.0 * q / (3.0 * e), -2.0 * q / (e * e)]
+        }
+    }
+}
+
+impl Law for MeasuredMembrane {
+    fn energy(&self, a: &Vector3<f64>) -> f64 {
+        let quadratic = |row: usize| 0.5 * a.dot(&(self.rows[row] * a));
+        let (p, d, s) = (0.5 * (a.x + a.y), 0.5 * (a.x - a.y), 0.5 * a.z);
+        let r = (d * d + s * s + ROUND * ROUND).sqrt();
+        let [ramp, ..] = Self::ramp(p + r - ROUND);
+        let q_0 = quadratic(0);
+        if ramp == 0.0 {
+            return q_0;
+        }
+        let blend = Self::blend(d / r);
+        let [q_1, q_2] = blend.rows.map(quadratic);
+        q_0 + ramp * (q_1 + blend.w * (q_2 - q_1) - q_0)
+    }
+
+    fn response(&self, a: &Vector3<f64>) -> Response {
+        let s_0 = self.rows[0] * a;
+        let q_0 = 0.5 * a.dot(&s_0);
+        // Mean strain p, half difference d, shear s; r is the radius of Mohr's circle.
+        let (p, d, s) = (0.5 * (a.x + a.y), 0.5 * (a.x - a.y), 0.5 * a.z);
+        let r = (d * d + s * s + ROUND * ROUND).sqrt();
+        let [ramp, d_ramp, dd_ramp] = Self::ramp(p + r - ROUND);
+        if ramp == 0.0 {
+            return Response { energy: q_0, stress: s_0, tangent: self.rows[0] };
+        }
+
+        // ∇ and ∇² of e = p + r and c = d/r, first in (p, d, s), then in (a₁₁, a₂₂, 2a₁₂).
+        let (rd, rs) = (d / r, s / r);
+        let to_pds = Matrix3::new(0.5, 0.5, 0.0, 0.5, -0.5, 0.0, 0.0, 0.0, 0.5);
+        let symmetric = |dd: f64, ds: f64, ss: f64| {
+            to_pds.transpose() * Matrix3::new(0.0, 0.0, 0.0, 0.0, dd, ds, 0.0, ds, ss) * to_pds
+        };
+        let grad_e = to_pds.tr_mul(&Vector3::new(1.0, rd, rs));
+        let grad_c = to_pds.tr_mul(&Vector3::new(0.0, (1.0 - rd * rd) / r, -rd * rs / r));
+        let hess_e = symmetric((1.0 - rd * rd) / r, -rd * rs / r, (1.0 - rs * rs) / r);
+        let hess_c = symmetric(
+            -3.0 * rd * (1.0 - rd * rd) / (r * r),
+            rs * (3.0 * rd * rd - 1.0) / (r * r),
+            rd * (3.0 * rs * rs - 1.0) / (r * r),
+        );
+
+        let blend = Self::blend(rd);
+        let [k_1, k_2] = blend.rows.map(|row| self.rows[row]);
+        let (s_1, s_12) = (k_1 * a, (k_2 - k_1) * a);
+        let q_12 = 0.5 * a.dot(&s_12);
+        let excess = 0.5 * a.dot(&s_1) + blend.w * q_12 - q_0;
+        let s_excess = s_1 + s_12 * blend.w - s_0;
+        let k_excess = k_1 + (k_2 - k_1) * blend.w - self.rows[0];
+        let (q_c, q_cc, s_c) = (blend.dw * q_12, blend.ddw * q_12, s_12 * blend.dw);
+
+        let outer = |u: &Vector3<f64>, v: &Vector3<f64>| u * v.transpose() + v * u.transpose();
+        let grad_excess = s_excess + grad_c * q_c;
+        let hess_excess = k_excess
+            + outer(&grad_c, &s_c)
+            + grad_c * grad_c.transpose() * q_cc
+            + hess_c * q_c;
+        Response {
+            energy: q_0 + ramp * excess,
+            stress: s_0 + grad_excess * ramp + grad_e * (d_ramp * excess),
+            tangent: self.rows[0]
+                + hess_excess * ramp
+                + outer(&grad_e, &grad_excess) * d_ramp
+                + (grad_e * grad_e.transpose() * dd_ramp + hess_e * d_ramp) * excess,
+        }
+    }
+
+    fn at_rest(&self) -> Matrix3<f64> {
+        self.rows[0]
+    }
+}

@@ -1,0 +1,170 @@
+//! Stretching and shearing of the triangles: any [`Law`] of the Green strain, with Kelvin–Voigt
+//! damping.
+//!
+//! With F = Σ xᵢ bᵢᵀ and E = ½ (FᵀF − I) the energy is A ψ(E), the force on corner i is −A F S bᵢ,
+//! and the stiffness between corners i and j is A (ZᵢᵀD Zⱼ + (bᵢ·S bⱼ) I), where S = ∂ψ/∂E,
+//! D = ∂²ψ/∂E² and Zᵢ = ∂E/∂xᵢ. The projected stiffness clamps D and S to their positive parts.
+
+use crate::element::{ElementModel, ElementSystem, Stiffness};
+use crate::fabric::Fabric;
+use crate::force::Stage;
+use crate::law::{Law, Membrane, Response, project3};
+use crate::rest::RestTriangle;
+use mesh_core::{World3, par};
+use nalgebra::{Matrix2, Matrix3, Matrix3x2, Vector3};
+use std::sync::Arc;
+
+/// The membrane energy of all triangles.
+#[derive(Debug)]
+pub struct MembraneModel {
+    stencils: Vec<[u32; 3]>,
+    rest: Arc<Vec<RestTriangle>>,
+    fabrics: Arc<Vec<Fabric>>,
+    /// Strain at the start of the step, kept only if some fabric is damped.
+    strain_t0: Vec<Vector3<f64>>,
+    damped: bool,
+    h: f64,
+}
+
+impl MembraneModel {
+    /// Membranes over the given triangles.
+    pub fn new(
+        triangles: &[[u32; 3]],
+        rest: Arc<Vec<RestTriangle>>,
+        fabrics: Arc<Vec<Fabric>>,
+    ) -> Self {
+        let damped = fabrics.iter().any(|f| f.damping.stiffness > 0.0);
+        let strain_t0 = if damped { vec![Vector3::zeros(); rest.len()] } else { Vec::new() };
+        MembraneModel { stencils: triangles.to_vec(), rest, fabrics, strain_t0, damped, h: 1.0 }
+    }
+
+    fn fabric(&self, e: usize) -> &Fabric {
+        &self.fabrics[self.rest[e].panel as usize]
+    }
+
+    /// Damping as a tangent (N/m): η/h times the law's tangent at rest.
+    fn viscosity(&self, e: usize) -> Option<Matrix3<f64>> {
+        let fabric = self.fabric(e);
+        let eta = fabric.damping.stiffness;
+        (self.damped && eta > 0.0).then(|| fabric.membrane.at_rest() * (eta / self.h))
+    }
+
+    fn response(&self, e: usize, strain: &Vector3<f64>) -> Response {
+        let mut response = self.fabric(e).membrane.response(strain);
+        if let Some(viscosity) = self.viscosity(e) {
+            response.stress += viscosity * (strain - self.strain_t0[e]);
+            response.tangent += viscosity;
+        }
+        response
+    }
+}
+
+/// The symmetric 2×2 stress of (s₁₁, s₂₂, s₁₂).
+fn tensor(s: &Vector3<f64>) -> Matrix2<f64> {
+    Matrix2::new(s.x, s.z, s.z, s.y)
+}
+
+/// Positive part of a symmetric 2×2 matrix, in closed form.
+pub(crate) fn positive_part(s: &Matrix2<f64>) -> Matrix2<f64> {
+    let mean = 0.5 * (s[(0, 0)] + s[(1, 1)]);
+    let half = 0.5 * (s[(0, 0)] - s[(1, 1)]);
+    let radius = half.hypot(s[(0, 1)]);
+    let (high, low) = (mean + radius, mean - radius);
+    if low >= 0.0 {
+        *s
+    } else if high <= 0.0 {
+        Matrix2::zeros()
+    } else {
+        // high > 0 > low: s = high P + low (I − P), so P = (s − low I)/(high − low).
+        (s - Matrix2::identity() * low) * (high / (high - low))
+    }
+}
+
+/// The corners' share of P bᵢ with the first Piola–Kirchhoff stress P = F S (N/m).
+fn spread(rest: &RestTriangle, piola: &Matrix3x2<f64>) -> [World3; 3] {
+    let g1 = piola * rest.b[1] * rest.area;
+    let g2 = piola * rest.b[2] * rest.area;
+    [-g1 - g2, g1, g2]
+}
+
+impl ElementModel<3> for MembraneModel {
+    fn name(&self) -> &'static str {
+        "membrane"
+    }
+
+    fn stencils(&self) -> &[[u32; 3]] {
+        &self.stencils
+    }
+
+    fn begin(&mut self, stage: Stage<'_>) {
+        self.h = stage.h;
+        if self.damped {
+            let (rest, stencils) = (&self.rest, &self.stencils);
+            par::fill(&mut self.strain_t0, |e| {
+                let x = stencils[e].map(|i| stage.x_t0[i as usize]);
+                RestTriangle::green_strain(&rest[e].deformation_gradient(&x))
+            });
+        }
+    }
+
+    fn energy(&self, e: usize, x: &[World3; 3]) -> f64 {
+        let rest = &self.rest[e];
+        let strain = RestTriangle::green_strain(&rest.deformation_gradient(x));
+        let mut energy = self.fabric(e).membrane.energy(&strain);
+        if let Some(viscosity) = self.viscosity(e) {
+            let change = strain - self.strain_t0[e];
+            energy += 0.5 * change.dot(&(viscosity * change));
+        }
+        energy * rest.area
+    }
+
+    fn gradient(&self, e: usize, x: &[World3; 3]) -> [World3; 3] {
+        let rest = &self.rest[e];
+        let f = rest.deformation_gradient(x);
+        let response = self.response(e, &RestTriangle::green_strain(&f));
+        spread(rest, &(f * tensor(&response.stress)))
+    }
+
+    fn system(&self, e: usize, x: &[World3; 3], kind: Stiffness, out: &mut ElementSystem<3>) {
+        let rest = &self.rest[e];
+        let f = rest.deformation_gradient(x);
+        let Response { stress, tangent, .. } =
+            self.response(e, &RestTriangle::green_strain(&f));
+        let stress = tensor(&stress);
+        out.active = true;
+        out.gradient = spread(rest, &(f * stress));
+
+        let (s, d) = match kind {
+            Stiffness::Exact => (stress, tangent),
+            Stiffness::Projected => (positive_part(&stress), self.projected(e, &tangent)),
+        };
+        // Only corners 1 and 2 need work: each row of blocks sums to zero.
+        let (f1, f2) = (f.column(0), f.column(1));
+        let z = [1, 2].map(|i| {
+            let b = rest.b[i];
+            Matrix3::from_columns(&[f1 * b.x, f2 * b.y, f1 * b.y + f2 * b.x])
+        });
+        let block = |i: usize, j: usize| {
+            let geometric = rest.b[i + 1].dot(&(s * rest.b[j + 1]));
+            (z[i] * d * z[j].transpose() + Matrix3::identity() * geometric) * rest.area
+        };
+        let (k11, k21, k22) = (block(0, 0), block(1, 0), block(1, 1));
+        let (k10, k20) = (-k11 - k21.transpose(), -k21 - k22);
+        out.stiffness[1][1] = k11;
+        out.stiffness[2][1] = k21;
+        out.stiffness[2][2] = k22;
+        out.stiffness[1][0] = k10;
+        out.stiffness[2][0] = k20;
+        out.stiffness[0][0] = -k10 - k20;
+    }
+}
+
+impl MembraneModel {
+    /// A quadratic law is positive definite by construction; others are projected.
+    fn projected(&self, e: usize, tangent: &Matrix3<f64>) -> Matrix3<f64> {
+        match self.fabric(e).membrane {
+            Membrane::Orthotropic(_) => *tangent,
+            Membrane::Measured(_) => project3(tangent),
+        }
+    }
+}

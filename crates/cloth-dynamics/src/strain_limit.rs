@@ -1,0 +1,216 @@
+//! Strain limits: principal stretches are kept in bounds by a relaxed logarithmic barrier.
+//!
+//! Each singular value σ of F pays β(t) with t = (bound − σ)/δ toward the bound, where δ is a fifth
+//! of the distance from rest: β(t) = −(1 − t)² ln t, zero for t ≥ 1. A pure barrier would need a
+//! feasible start, which remeshing, moved handles and scenes cannot promise; so below t₀ it goes on
+//! as the parabola with the same value, slope and curvature. Energy and stiffness are then finite
+//! everywhere, and the bound holds up to the load stated at [`STRENGTH`].
+
+use crate::element::{ElementModel, ElementSystem, Stiffness};
+use crate::fabric::{Fabric, StrainLimits};
+use crate::force::Stage;
+use crate::rest::RestTriangle;
+use mesh_core::World3;
+use nalgebra::{Matrix2, Matrix3, Matrix3x2};
+use std::sync::Arc;
+
+/// Line load (N/m) at which a bound is approached up to a twentieth of the band; the bound itself is
+/// reached at twice this load. Of the order of the load that tears a light woven fabric.
+pub const STRENGTH: f64 = 1e4;
+/// Where the barrier goes over into its parabola.
+const T0: f64 = 0.05;
+/// The band next to the bound in which the limit acts, as a share of its distance from rest.
+const BAND: f64 = 0.2;
+
+/// β and its first two derivatives.
+fn barrier(t: f64) -> [f64; 3] {
+    let exact = |t: f64| {
+        let (q, l) = (1.0 - t, t.ln());
+        [-q * q * l, 2.0 * q * l - q * q / t, -2.0 * l + 4.0 * q / t + q * q / (t * t)]
+    };
+    if t >= 1.0 {
+        [0.0; 3]
+    } else if t > T0 {
+        exact(t)
+    } else {
+        let [b, d, dd] = exact(T0);
+        let s = t - T0;
+        [b + d * s + 0.5 * dd * s * s, d + dd * s, dd]
+    }
+}
+
+/// Energy density (J/m²) of one principal stretch and its first two derivatives.
+fn penalty(limits: &StrainLimits, sigma: f64) -> [f64; 3] {
+    let mut total = [0.0; 3];
+    // Distance into the cloth's free range, its sign, and the bound's distance from rest.
+    for (gap, sign, reach) in [
+        (limits.max - sigma, -1.0, limits.max - 1.0),
+        (sigma - limits.min, 1.0, 1.0 - limits.min),
+    ] {
+        let delta = BAND * reach;
+        if gap < delta {
+            let [_, slope_t0, _] = barrier(T0);
+            let scale = STRENGTH * delta / -slope_t0;
+            let [b, d, dd] = barrier(gap / delta);
+            total[0] += scale * b;
+            total[1] += sign * scale * d / delta;
+            total[2] += scale * dd / (delta * delta);
+        }
+    }
+    total
+}
+
+/// Singular values σ₁ ≥ σ₂ ≥ 0 of F and its right singular vectors as columns.
+pub fn principal_stretches(f: &Matrix3x2<f64>) -> ([f64; 2], Matrix2<f64>) {
+    let c = f.tr_mul(f);
+    let half = 0.5 * (c[(0, 0)] - c[(1, 1)]);
+    let radius = half.hypot(c[(0, 1)]);
+    let mean = 0.5 * (c[(0, 0)] + c[(1, 1)]);
+    // The smaller one from the area, which does not cancel.
+    let high = (mean + radius).max(0.0).sqrt();
+    let area = f.column(0).cross(&f.column(1)).norm();
+    let low = if high > 0.0 { area / high } else { 0.0 };
+    // Half-angle of (half, c₀₁): the direction of the larger stretch.
+    let (x, y) = if radius == 0.0 {
+        (1.0, 0.0)
+    } else if half >= 0.0 {
+        (half + radius, c[(0, 1)])
+    } else {
+        (c[(0, 1)].abs(), (radius - half).copysign(c[(0, 1)]))
+    };
+    let n = x.hypot(y);
+    let (x, y) = (x / n, y / n);
+    ([high, low], Matrix2::new(x, -y, y, x))
+}
+
+/// Strain limits of all triangles whose fabric has them.
+#[derive(Debug)]
+pub struct StrainLimitModel {
+    stencils: Vec<[u32; 3]>,
+    triangles: Vec<u32>,
+    rest: Arc<Vec<RestTriangle>>,
+    fabrics: Arc<Vec<Fabric>>,
+}
+
+impl StrainLimitModel {
+    /// Limits over the given triangles; `None` if no fabric has any.
+    pub fn new(
+        triangles: &[[u32; 3]],
+        rest: Arc<Vec<RestTriangle>>,
+        fabrics: Arc<Vec<Fabric>>,
+    ) -> Option<Self> {
+        let limited: Vec<u32> = (0..rest.len() as u32)
+            .filter(|&t| fabrics[rest[t as usize].panel as usize].strain_limits.is_some())
+            .collect();
+        let stencils = limited.iter().map(|&t| triangles[t as usize]).collect();
+        (!limited.is_empty()).then_some(StrainLimitModel {
+            stencils,
+            triangles: limited,
+            rest,
+            fabrics,
+        })
+    }
+
+    fn element(&self, e: usize) -> (&RestTriangle, &StrainLimits) {
+        let rest = &self.rest[self.triangles[e] as usize];
+        let limits = self.fabrics[rest.panel as usize].strain_limits.as_ref();
+        (rest, limits.expect("only limited triangles are listed"))
+    }
+}
+
+/// Cheap test on FᵀF whether both stretches are in the free range.
+fn is_free(limits: &StrainLimits, f: &Matrix3x2<f64>) -> bool {
+    let c = f.tr_mul(f);
+    let mean = 0.5 * (c[(0, 0)] + c[(1, 1)]);
+    let radius = (0.5 * (c[(0, 0)] - c[(1, 1)])).hypot(c[(0, 1)]);
+    let high = limits.max - BAND * (limits.max - 1.0);
+    let low = limits.min + BAND * (1.0 - limits.min);
+    mean + radius <= high * high && mean - radius >= low * low
+}
+
+impl ElementModel<3> for StrainLimitModel {
+    fn name(&self) -> &'static str {
+        "strain limits"
+    }
+
+    fn stencils(&self) -> &[[u32; 3]] {
+        &self.stencils
+    }
+
+    fn begin(&mut self, _: Stage<'_>) {}
+
+    fn energy(&self, e: usize, x: &[World3; 3]) -> f64 {
+        let (rest, limits) = self.element(e);
+        let f = rest.deformation_gradient(x);
+        if is_free(limits, &f) {
+            return 0.0;
+        }
+        let (sigma, _) = principal_stretches(&f);
+        rest.area * sigma.iter().map(|&s| penalty(limits, s)[0]).sum::<f64>()
+    }
+
+    fn gradient(&self, e: usize, x: &[World3; 3]) -> [World3; 3] {
+        let mut out = ElementSystem::zero();
+        self.system(e, x, Stiffness::Projected, &mut out);
+        out.gradient
+    }
+
+    /// The eigenvectors of the Hessian of an isotropic energy are known (Smith2019): the two
+    /// stretches, a twist and a flip in the plane, and the two tilts out of it.
+    fn system(&self, e: usize, x: &[World3; 3], kind: Stiffness, out: &mut ElementSystem<3>) {
+        let (rest, limits) = self.element(e);
+        let f = rest.deformation_gradient(x);
+        out.active = !is_free(limits, &f);
+        if !out.active {
+            *out = ElementSystem::zero();
+            return;
+        }
+        let (sigma, v) = principal_stretches(&f);
+        let [p1, p2] = sigma.map(|s| penalty(limits, s));
+        let frame = orthonormal(&(f * v), sigma);
+        let [u1, u2, n] = frame;
+        let (v1, v2) = (v.column(0).into_owned(), v.column(1).into_owned());
+
+        // A floor keeps the quotients finite on collapsed triangles.
+        let [s1, s2] = sigma.map(|s| s.max(1e-9));
+        let apart = s1 - s2;
+        let flip = if apart > 1e-7 { (p1[1] - p2[1]) / apart } else { 0.5 * (p1[2] + p2[2]) };
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let modes = [
+            (p1[2], u1 * v1.transpose()),
+            (p2[2], u2 * v2.transpose()),
+            ((p1[1] + p2[1]) / (s1 + s2), (u1 * v2.transpose() - u2 * v1.transpose()) * half),
+            (flip, (u1 * v2.transpose() + u2 * v1.transpose()) * half),
+            (p1[1] / s1, n * v1.transpose()),
+            (p2[1] / s2, n * v2.transpose()),
+        ];
+        let piola = (u1 * v1.transpose()) * p1[1] + (u2 * v2.transpose()) * p2[1];
+        out.gradient = rest.b.map(|b| piola * b * rest.area);
+        out.stiffness = [[Matrix3::zeros(); 3]; 3];
+        for (lambda, mode) in modes {
+            if lambda <= 0.0 && (kind == Stiffness::Projected || lambda == 0.0) {
+                continue;
+            }
+            let m = rest.b.map(|b| mode * b);
+            for i in 0..3 {
+                for j in 0..=i {
+                    out.stiffness[i][j] += m[i] * m[j].transpose() * (lambda * rest.area);
+                }
+            }
+        }
+    }
+}
+
+/// Left singular vectors and the normal, completed where F is degenerate.
+fn orthonormal(fv: &Matrix3x2<f64>, [s1, s2]: [f64; 2]) -> [World3; 3] {
+    let u1 = if s1 > 1e-12 { fv.column(0).normalize() } else { World3::x() };
+    let rest = fv.column(1) - u1 * u1.dot(&fv.column(1));
+    let u2 = if s2 > 1e-9 * s1 && rest.norm() > 0.0 {
+        rest.normalize()
+    } else {
+        // Any perpendicular direction: start from the axis least aligned with u1.
+        let axis = World3::ith(u1.iamin(), 1.0);
+        (axis - u1 * u1.dot(&axis)).normalize()
+    };
+    [u1, u2, u1.cross(&u2)]
+}

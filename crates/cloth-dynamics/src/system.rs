@@ -1,0 +1,147 @@
+//! All forces of a cloth and the system matrix they share: what exists is what the scene needs.
+
+use crate::element::Elements;
+use crate::fabric::Fabric;
+use crate::force::{Force, Stage};
+use crate::hinge::HingeModel;
+use crate::membrane::MembraneModel;
+use crate::point_forces::{Gravity, MassDamping, Springs};
+use crate::rest::RestTriangle;
+use crate::shape_operator::ShapeOperatorModel;
+use crate::solver::{BlockMatrix, PatternBuilder, PatternError};
+use crate::strain_limit::StrainLimitModel;
+use crate::wind::{Wind, WindModel};
+use mesh_core::{ClothState, World3};
+use std::sync::Arc;
+
+/// What acts on the cloth from outside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Environment {
+    /// Acceleration of gravity (m/s²).
+    pub gravity: World3,
+    /// Wind, if any.
+    pub wind: Option<Wind>,
+}
+
+/// Where vertices are held at one time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Constraints {
+    /// Vertices fixed exactly, with their positions (m).
+    pub fixed: Vec<(u32, World3)>,
+    /// Vertices pulled by springs: where to (m) and how stiffly (N/m).
+    pub springs: Vec<(u32, World3, f64)>,
+}
+
+/// The forces of one mesh. Built anew when the mesh changes.
+pub struct System {
+    forces: Vec<Box<dyn Force>>,
+    pub(crate) springs: Springs,
+    pub(crate) matrix: BlockMatrix,
+}
+
+impl std::fmt::Debug for System {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("System").field("forces", &self.force_names()).finish_non_exhaustive()
+    }
+}
+
+impl System {
+    /// Builds the forces that the fabrics and the environment call for, and the matrix pattern.
+    ///
+    /// # Errors
+    /// If the matrix would be too large for its indices.
+    pub fn new(
+        cloth: &ClothState,
+        fabrics: &Arc<Vec<Fabric>>,
+        environment: &Environment,
+    ) -> Result<System, PatternError> {
+        let mesh = &cloth.mesh;
+        let triangles = mesh.triangles();
+        let rest = Arc::new(RestTriangle::all(cloth));
+        let mut forces: Vec<Box<dyn Force>> = Vec::new();
+        let membrane = MembraneModel::new(triangles, rest.clone(), fabrics.clone());
+        forces.push(Box::new(Elements::new(membrane)));
+        if let Some(m) = ShapeOperatorModel::new(mesh, rest.clone(), fabrics.clone()) {
+            forces.push(Box::new(Elements::new(m)));
+        }
+        if let Some(m) = HingeModel::new(mesh, fabrics) {
+            forces.push(Box::new(Elements::new(m)));
+        }
+        if let Some(m) = StrainLimitModel::new(triangles, rest.clone(), fabrics.clone()) {
+            forces.push(Box::new(Elements::new(m)));
+        }
+        if let Some(wind) = environment.wind {
+            forces.push(Box::new(Elements::new(WindModel::new(triangles, wind))));
+        }
+        if environment.gravity != World3::zeros() {
+            forces.push(Box::new(Gravity::new(cloth.m.clone(), environment.gravity)));
+        }
+        if let Some(damping) = MassDamping::new(mass_damping_rates(cloth, &rest, fabrics)) {
+            forces.push(Box::new(damping));
+        }
+
+        let mut pattern = PatternBuilder::new(mesh.n_vertices());
+        for force in &forces {
+            force.couple(&mut pattern)?;
+        }
+        let matrix = BlockMatrix::new(Arc::new(pattern.build()?));
+        for force in &mut forces {
+            force.bind(matrix.pattern());
+        }
+        Ok(System { forces, springs: Springs::default(), matrix })
+    }
+
+    /// Names of the forces that exist.
+    pub fn force_names(&self) -> Vec<&'static str> {
+        self.forces.iter().map(|f| f.name()).collect()
+    }
+
+    /// Potential energy of all forces at `x` (J): the fabric's, gravity's and the springs', and
+    /// whatever the current stage dissipates.
+    pub fn energy(&self, x: &[World3]) -> f64 {
+        self.forces.iter().map(|f| f.energy(x)).sum::<f64>() + self.springs.energy(x)
+    }
+
+    /// Energy of the force of one name (J), zero if it does not exist.
+    pub fn energy_of(&self, name: &str, x: &[World3]) -> f64 {
+        self.forces.iter().filter(|f| f.name() == name).map(|f| f.energy(x)).sum()
+    }
+
+    /// Gradient of [`System::energy`] (N).
+    pub fn gradient(&self, x: &[World3]) -> Vec<World3> {
+        let mut gradient = vec![World3::zeros(); x.len()];
+        for force in &self.forces {
+            force.add_gradient(x, &mut gradient);
+        }
+        self.springs.add_gradient(x, &mut gradient);
+        gradient
+    }
+
+    /// Starts a stage: the forces take what they lag.
+    pub fn begin(&mut self, stage: Stage<'_>) {
+        for force in &mut self.forces {
+            force.begin(stage);
+        }
+    }
+
+    /// Sets the matrix to the projected stiffness and adds the gradient.
+    pub(crate) fn assemble(&mut self, x: &[World3], gradient: &mut [World3]) {
+        self.matrix.set_zero();
+        for force in &self.forces {
+            force.add_system(x, gradient, &mut self.matrix);
+        }
+        self.springs.add_system(x, gradient, &mut self.matrix);
+    }
+}
+
+/// α m of every vertex (kg/s), lumped like the masses.
+fn mass_damping_rates(cloth: &ClothState, rest: &[RestTriangle], fabrics: &[Fabric]) -> Vec<f64> {
+    let mut rates = vec![0.0; cloth.mesh.n_vertices()];
+    for (corners, rest) in cloth.mesh.triangles().iter().zip(rest) {
+        let fabric = &fabrics[rest.panel as usize];
+        for &i in corners {
+            rates[i as usize] += fabric.damping.mass * fabric.density * rest.area / 3.0;
+        }
+    }
+    rates
+}
