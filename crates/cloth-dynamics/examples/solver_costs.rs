@@ -110,22 +110,25 @@ fn cpu_seconds(origin: Instant) -> f64 {
     nanoseconds.map_or_else(|| origin.elapsed().as_secs_f64(), |ns| ns * 1e-9)
 }
 
-/// The least of `n` measurements, in seconds.
-fn least(n: usize, mut run: impl FnMut()) -> f64 {
+/// Mean CPU seconds of a run, over as many runs as fill a fifth of a second (the clock may tick in
+/// steps of 4 ms).
+fn seconds(mut run: impl FnMut()) -> f64 {
     let origin = Instant::now();
-    let mut best = f64::INFINITY;
-    for _ in 0..n {
-        let start = cpu_seconds(origin);
+    let start = cpu_seconds(origin);
+    for n in 1.. {
         run();
-        best = best.min(cpu_seconds(origin) - start);
+        let spent = cpu_seconds(origin) - start;
+        if spent >= 0.2 {
+            return spent / f64::from(n);
+        }
     }
-    best
+    f64::NAN
 }
 
 fn main() {
     let asked: Vec<usize> = std::env::args().skip(1).filter_map(|a| a.parse().ok()).collect();
     let sides = if asked.is_empty() { vec![30, 71, 141, 245] } else { asked };
-    println!("CPU seconds. x y / z: single, double precision. CG to 1e-6; 'soft': h = 2 ms, 500 N/m;");
+    println!("CPU seconds. x (iterations) / y: single, double precision. CG to 1e-6; 'soft': h = 2 ms, 500 N/m;");
     println!("'stiff': 10 ms, 2000 N/m; 'stale': stiff, sheet waved by 1 mm since the factor was made.");
     for blocks_per_row in [7, 13, 19] {
         for &side in &sides {
@@ -136,7 +139,6 @@ fn main() {
 
 fn row(sheet: &Sheet, blocks_per_row: usize) {
     let n = sheet.positions.len();
-    let repeats = (120_000 / n).clamp(3, 30);
     let settings = LinearSettings::default();
     let loads: Vec<Vector3<f64>> =
         sheet.positions.iter().map(|p| Vector3::new(0.0, 0.1 * (40.0 * p.x).sin(), -1.0)).collect();
@@ -152,18 +154,23 @@ fn row(sheet: &Sheet, blocks_per_row: usize) {
     let mut jacobi = BlockJacobiCg::new(settings);
     let cg = [&soft, &stiff].map(|matrix| {
         let iterations = solve(&mut jacobi, matrix).iterations;
-        (least(3, || drop(solve(&mut jacobi, matrix))), iterations)
+        let seconds = seconds(|| {
+            solve(&mut jacobi, matrix);
+        });
+        (seconds, iterations)
     });
 
     let mut size = None;
     let direct = [Precision::Mixed, Precision::Double].map(|precision| {
         let mut solver = SparseCholesky::new(LinearSettings { precision, ..settings });
-        let first = least(3, || {
+        let first = seconds(|| {
             solver.reset();
             solve(&mut solver, &stiff);
         });
         let report = solve(&mut solver, &stiff);
-        let again = least(repeats, || drop(solve(&mut solver, &stiff)));
+        let again = seconds(|| {
+            solve(&mut solver, &stiff);
+        });
         size = solver.factor_size();
         (first - again, again, report.iterations)
     });
@@ -171,10 +178,17 @@ fn row(sheet: &Sheet, blocks_per_row: usize) {
 
     let stale = [Precision::Mixed, Precision::Double].map(|precision| {
         let mut solver = SolverKind::StaleFactorCg.build(LinearSettings { precision, ..settings });
-        solve(&mut *solver, &stiff);
+        let fresh = seconds(|| {
+            solver.reset();
+            solve(&mut *solver, &stiff);
+        });
         let mut iterations = 0;
-        let seconds = least(1, || iterations = solve(&mut *solver, &waved).iterations);
-        (seconds, iterations)
+        let both = seconds(|| {
+            solver.reset();
+            solve(&mut *solver, &stiff);
+            iterations = solve(&mut *solver, &waved).iterations;
+        });
+        (both - fresh, iterations)
     });
 
     let blocks = sheet.pattern.n_blocks() as f64;

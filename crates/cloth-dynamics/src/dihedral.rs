@@ -9,7 +9,7 @@ use mesh_core::World3;
 use nalgebra::Matrix3;
 
 /// Gradient of the angle (1/m) at (a, b, c, d). Zero if a triangle is degenerate.
-pub fn gradient(x: &[World3; 4]) -> [World3; 4] {
+pub(crate) fn gradient(x: &[World3; 4]) -> [World3; 4] {
     let [a, b, c, d] = *x;
     let e = b - a;
     let (n_c, n_d) = (e.cross(&(c - a)), (d - a).cross(&e));
@@ -30,7 +30,7 @@ fn cross(v: &World3) -> Matrix3<f64> {
 
 /// Second derivatives of the angle (1/m²): blocks `[i][j]` = ∂(∇ᵢθ)/∂xⱼ for (a, b, c, d). Zero if
 /// a triangle is degenerate.
-pub fn hessian(x: &[World3; 4]) -> [[Matrix3<f64>; 4]; 4] {
+pub(crate) fn hessian(x: &[World3; 4]) -> [[Matrix3<f64>; 4]; 4] {
     let [a, b, c, d] = *x;
     let e = b - a;
     let ee = e.norm_squared();

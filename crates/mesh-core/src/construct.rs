@@ -152,6 +152,26 @@ impl Mesh {
         Ok(self)
     }
 
+    /// The same mesh with the [anchors](Mesh::anchors) it had when it was saved.
+    ///
+    /// # Errors
+    /// If an anchor does not leave its vertex, or a boundary vertex is not anchored at its boundary.
+    pub fn with_anchors(mut self, anchors: Vec<u32>) -> Result<Mesh, MeshError> {
+        let (expected, got) = (self.n_vertices(), anchors.len());
+        if expected != got {
+            return Err(MeshError::Length { what: "vertex anchors", expected, got });
+        }
+        for (v, &h) in anchors.iter().enumerate() {
+            let leaves = (h as usize) < self.twin.len() && self.origin(HalfEdge(h)).index() == v;
+            let boundary = self.is_boundary_vertex(VertexId(v as u32));
+            if !leaves || boundary && self.out[v] != h {
+                return Err(MeshError::Broken(format!("vertex {v} cannot be anchored at {h}")));
+            }
+        }
+        self.out = anchors;
+        Ok(self)
+    }
+
     /// Finds each vertex's first outgoing half-edge and makes sure that one fan holds them all.
     fn anchor_all(&mut self) -> Result<(), MeshError> {
         let mut degree = vec![0u32; self.n_vertices()];

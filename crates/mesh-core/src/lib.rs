@@ -33,6 +33,8 @@
 
 mod collapse;
 mod construct;
+#[cfg(test)]
+mod corruption;
 mod edit;
 mod field;
 mod flip;

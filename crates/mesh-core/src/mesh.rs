@@ -54,6 +54,13 @@ impl Mesh {
         &self.uid
     }
 
+    /// One outgoing half-edge per vertex, from which [`Mesh::outgoing`] starts: on the boundary it
+    /// is determined, inside it depends on past edits. Sums round a vertex follow this order, so a
+    /// checkpoint keeps it.
+    pub fn anchors(&self) -> &[u32] {
+        &self.out
+    }
+
     /// The uid that the next new vertex will get.
     pub fn next_uid(&self) -> u64 {
         self.next_uid
@@ -176,7 +183,8 @@ impl Mesh {
 
     /// The neighbours of a vertex, counter-clockwise.
     pub fn neighbours(&self, v: VertexId) -> impl Iterator<Item = VertexId> + '_ {
-        let last = self.outgoing(v).last().map(HalfEdge::prev).filter(|&h| self.is_boundary_edge(h));
+        let last =
+            self.outgoing(v).last().map(HalfEdge::prev).filter(|&h| self.is_boundary_edge(h));
         self.outgoing(v).map(|h| self.dest(h)).chain(last.map(|h| self.origin(h)))
     }
 
@@ -193,6 +201,19 @@ impl Mesh {
     /// Vertices − edges + triangles.
     pub fn euler_characteristic(&self) -> i64 {
         self.n_vertices() as i64 - self.edges().count() as i64 + self.n_triangles() as i64
+    }
+
+    /// Chooses every vertex's first outgoing half-edge as [`Mesh::new`] does: the one without a
+    /// twin, or else the lowest. Edits leave inner vertices with any; sums around a vertex then
+    /// depend in their last bits on how the mesh came about.
+    pub fn normalise(&mut self) {
+        self.out.fill(NONE);
+        for h in 0..self.twin.len() {
+            let v = self.tri[h / 3][h % 3] as usize;
+            if self.out[v] == NONE || self.twin[h] == NONE {
+                self.out[v] = h as u32;
+            }
+        }
     }
 
     /// Makes `out[v]` the clockwise-most outgoing half-edge, starting from any outgoing one.

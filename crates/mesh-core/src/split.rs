@@ -12,8 +12,7 @@ impl Mesh {
     /// If a half would be too thin to keep a clear orientation; the mesh is then unchanged.
     pub fn split(&mut self, h: HalfEdge) -> Result<Edit, Refusal> {
         for side in [Some(h), self.twin(h)].into_iter().flatten() {
-            let [u_a, u_b, u_c] =
-                [side, side.next(), side.prev()].map(|e| self.corner_material(e));
+            let [u_a, u_b, u_c] = [side, side.next(), side.prev()].map(|e| self.corner_material(e));
             let middle = (u_a + u_b) * 0.5;
             if !is_sound(u_a, middle, u_c) || !is_sound(middle, u_b, u_c) {
                 return Err(Refusal::Inverted);

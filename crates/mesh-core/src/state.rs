@@ -156,9 +156,8 @@ impl ClothState {
     /// Recomputes the masses of a patch and spreads the momentum that the change of masses made
     /// (plus `extra`, kg m/s) evenly over it, as one common change of velocity.
     fn lump_conserving(&mut self, patch: &[VertexId], extra: World3) {
-        let momentum = |s: &Self| -> World3 {
-            patch.iter().map(|i| s.v[i.index()] * s.m[i.index()]).sum()
-        };
+        let momentum =
+            |s: &Self| -> World3 { patch.iter().map(|i| s.v[i.index()] * s.m[i.index()]).sum() };
         let before = momentum(self) + extra;
         for &i in patch {
             self.m[i.index()] = self.lumped_mass(i);
@@ -176,6 +175,17 @@ impl ClothState {
         for i in ring {
             self.m[i.index()] = self.lumped_mass(i);
         }
+    }
+
+    /// Brings the state to the form that depends on nothing but itself: first half-edges as in
+    /// [`Mesh::normalise`] and masses summed in that order, as [`ClothState::new`] makes them from
+    /// the same triangles. A state that was saved and restored then has the same bits as one that
+    /// was not.
+    pub fn normalise(&mut self) {
+        self.mesh.normalise();
+        let mut m = std::mem::take(&mut self.m);
+        crate::par::fill(&mut m, |v| self.lumped_mass(VertexId(v as u32)));
+        self.m = m;
     }
 
     fn lumped_mass(&self, v: VertexId) -> f64 {

@@ -45,7 +45,11 @@ fn random_edit(cloth: &mut ClothState, kind: u8, pick: u32) -> Option<Edit> {
 }
 
 /// Applies edits and checks all that must not change; returns how many were made.
-fn check_edits(mut cloth: ClothState, edits: impl Iterator<Item = (u8, u32)>, every: usize) -> usize {
+fn check_edits(
+    mut cloth: ClothState,
+    edits: impl Iterator<Item = (u8, u32)>,
+    every: usize,
+) -> usize {
     let (area, euler) = (cloth.mesh.total_area(), cloth.mesh.euler_characteristic());
     let (mass, momentum) = (cloth.total_mass(), cloth.momentum());
     let ones = vec![1.0; cloth.mesh.n_vertices()];
@@ -85,7 +89,9 @@ fn a_hundred_thousand_edits() {
         // A fixed 64-bit generator (Knuth's MMIX constants): the same edits on every machine.
         let mut seed = 7u64;
         let mut next = move || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             (seed >> 33) as u32
         };
         let edits = (0..300_000).map(move |_| ((next() % 4) as u8, next()));

@@ -40,6 +40,17 @@ impl Quadratic {
         }
     }
 
+    /// A plate without Poisson coupling from its rigidities (N m) when bent along the warp, the bias
+    /// (45°) and the weft: a cylinder of curvature κ along the bias has κ₁₁ = κ₂₂ = κ/2 and 2κ₁₂ = κ.
+    /// Where the bias is softer than any such plate, the twist keeps a thousandth of the weakest.
+    ///
+    /// # Errors
+    /// If a rigidity is not positive and finite.
+    pub fn plate(warp: f64, bias: f64, weft: f64) -> Result<Self, NotPositive> {
+        let least = 1e-3 * warp.min(weft).min(bias);
+        Quadratic::orthotropic(warp, 0.0, weft, (bias - 0.25 * (warp + weft)).max(least))
+    }
+
     /// Isotropic with stiffness `k` and Poisson's ratio `nu` (plane stress): c₁₁ = k/(1 − ν²) for a
     /// membrane with k = E h (N/m); for a plate of rigidity B pass k = B (1 − ν²).
     ///

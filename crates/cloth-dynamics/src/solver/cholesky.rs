@@ -98,12 +98,13 @@ impl StaleFactorCg {
     pub(super) fn expected_cost(&self, matrix: &BlockMatrix, life: usize) -> f64 {
         let pattern = matrix.pattern();
         let size = self.size(matrix);
-        let single = self.kept.is_single(pattern);
-        let iteration = size.iteration(pattern, single);
+        let iteration = size.iteration(pattern, self.kept.is_single());
         let stale = self.life.last_iterations.map_or(FIRST_GUESS, |n| n as f64) * iteration;
         if self.kept.has_factor(pattern) && !self.life.worn {
             return stale;
         }
+        let single = self.kept.wants_single();
+        let iteration = size.iteration(pattern, single);
         let mut fresh = size.factorize(single) + 2.0 * iteration;
         if !self.kept.is_analysed(pattern) {
             fresh += cost::analysis(pattern);
@@ -122,10 +123,9 @@ impl StaleFactorCg {
         let pattern = matrix.pattern();
         let mut abandoned = 0;
         if self.kept.has_factor(pattern) && !self.life.worn {
-            let single = self.kept.is_single(pattern);
             let size = self.size(matrix);
-            let iteration = size.iteration(pattern, single);
-            let budget = (size.factorize(single) / iteration).ceil() as usize + 1;
+            let iteration = size.iteration(pattern, self.kept.is_single());
+            let budget = (size.factorize(self.kept.wants_single()) / iteration).ceil() as usize + 1;
             if let Some(outcome) = self.kept.solve_stale(matrix, rhs, x, budget) {
                 self.life.last_iterations = Some(outcome.iterations);
                 if matches!(outcome.end, End::Converged | End::Rounding) {
@@ -137,7 +137,7 @@ impl StaleFactorCg {
         }
         let report = self.kept.solve_fresh(matrix, rhs, x);
         let size = self.size(matrix);
-        let single = self.kept.is_single(pattern);
+        let single = self.kept.is_single();
         let last_iterations = self.life.last_iterations;
         self.life = Life { last_iterations, ..Life::default() };
         let report = report?;

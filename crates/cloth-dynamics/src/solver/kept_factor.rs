@@ -13,9 +13,14 @@ use super::matrix::BlockMatrix;
 use super::pattern::BlockPattern;
 use super::{LinearError, LinearReport, LinearSettings, Method, Precision, no_convergence};
 
-/// The most iterations that improve the solution of a fresh factor in single precision. A factor
-/// that needs more is worse than one in double precision, which costs about this many.
-const REFINE_SINGLE: usize = 12;
+/// The most iterations that improve the solution of a fresh factor in single precision: about what
+/// double precision costs more.
+const REFINE_SINGLE: usize = 8;
+/// A factor in single precision is good if its own solution needs at most this many: a poor one is
+/// slow as a stale factor, too.
+const GOOD_SINGLE: usize = 3;
+/// After a poor one, so many factors are in double precision.
+const BARRED: usize = 32;
 /// The same in double precision, where more than one or two means a matrix at the edge of singular.
 const REFINE_DOUBLE: usize = 20;
 /// Shifts above one succeed by Gershgorin's theorem; beyond this the numbers must be broken.
@@ -66,6 +71,8 @@ pub(super) struct KeptFactor {
     numbers: Option<Numbers>,
     /// Whether `numbers` holds a factor, and not only room for one.
     valid: bool,
+    /// How many factors to come must be in double precision.
+    singles_barred: usize,
     /// The last shift that was needed; zero if none was.
     last_shift: f64,
     vectors: Vectors,
@@ -73,7 +80,14 @@ pub(super) struct KeptFactor {
 
 impl KeptFactor {
     pub(super) fn new(settings: LinearSettings) -> Self {
-        Self { settings, numbers: None, valid: false, last_shift: 0.0, vectors: Vectors::default() }
+        Self {
+            settings,
+            numbers: None,
+            valid: false,
+            singles_barred: 0,
+            last_shift: 0.0,
+            vectors: Vectors::default(),
+        }
     }
 
     pub(super) fn settings(&self) -> &LinearSettings {
@@ -95,32 +109,40 @@ impl KeptFactor {
         self.valid && self.is_analysed(pattern)
     }
 
-    /// Whether factors of this pattern are in single precision.
-    pub(super) fn is_single(&self, pattern: &Arc<BlockPattern>) -> bool {
-        match &self.numbers {
-            Some(numbers) if numbers.analysis().is_of(pattern) => {
-                matches!(numbers, Numbers::Single(_))
-            }
-            _ => self.settings.precision == Precision::Mixed,
-        }
+    /// Whether the factor there is is in single precision.
+    pub(super) fn is_single(&self) -> bool {
+        matches!(self.numbers, Some(Numbers::Single(_)))
     }
 
-    /// Takes the numbers out, for the given pattern: analyses it unless that has been done, and
-    /// tells whether it had to be.
+    /// Whether the next factor will be in single precision.
+    pub(super) fn wants_single(&self) -> bool {
+        self.settings.precision == Precision::Mixed && self.singles_barred == 0
+    }
+
+    /// Takes the numbers out, made ready for the next factor of this pattern: analyses it unless
+    /// that has been done, and tells whether it had to be.
     fn take(&mut self, pattern: &Arc<BlockPattern>) -> Result<(Numbers, bool), FaerError> {
         self.valid = false;
-        // An old analysis goes before the new one is made: together they may not fit.
-        if let Some(numbers) = self.numbers.take()
-            && numbers.analysis().is_of(pattern)
-        {
-            return Ok((numbers, false));
-        }
-        let analysis = Analysis::new(pattern.clone())?;
-        let numbers = match self.settings.precision {
-            Precision::Double => Numbers::Double(Factor::new(analysis)?),
-            Precision::Mixed => Numbers::Single(Factor::new(analysis)?),
+        let single = self.wants_single();
+        let (analysis, analysed) = match self.numbers.take() {
+            Some(numbers) if numbers.analysis().is_of(pattern) => match numbers {
+                Numbers::Single(_) if single => return Ok((numbers, false)),
+                Numbers::Double(_) if !single => return Ok((numbers, false)),
+                Numbers::Single(factor) => (factor.into_analysis(), false),
+                Numbers::Double(factor) => (factor.into_analysis(), false),
+            },
+            // The old one goes before the new one is made: together they may not fit.
+            old => {
+                drop(old);
+                (Analysis::new(pattern.clone())?, true)
+            }
         };
-        Ok((numbers, true))
+        let numbers = if single {
+            Numbers::Single(Factor::new(analysis)?)
+        } else {
+            Numbers::Double(Factor::new(analysis)?)
+        };
+        Ok((numbers, analysed))
     }
 
     /// Conjugate gradients on `matrix` with the factor there is (see [`Self::has_factor`]).
@@ -155,7 +177,8 @@ impl KeptFactor {
         let too_large =
             |error: FaerError| LinearError::TooLarge { n_vertices, reason: error.to_string() };
         let (numbers, analysed) = self.take(matrix.pattern()).map_err(too_large)?;
-        let mut wasted = 0;
+        self.singles_barred = self.singles_barred.saturating_sub(1);
+        let (mut wasted, mut single_failed) = (0, false);
         let mut factor = match numbers {
             Numbers::Double(factor) => factor,
             Numbers::Single(mut factor) => {
@@ -163,12 +186,16 @@ impl KeptFactor {
                 let vectors = &mut self.vectors;
                 match attempt(&mut factor, matrix, rhs, x, tolerance, REFINE_SINGLE, vectors) {
                     Ok(outcome) => {
+                        if outcome.iterations > GOOD_SINGLE {
+                            self.singles_barred = BARRED;
+                        }
                         self.numbers = Some(Numbers::Single(factor));
                         self.valid = true;
                         return Ok(report(&outcome, analysed));
                     }
                     Err(failure) => wasted = failure.iterations(),
                 }
+                single_failed = true;
                 Factor::new(factor.into_analysis()).map_err(too_large)?
             }
         };
@@ -177,6 +204,10 @@ impl KeptFactor {
         let (outcome, wasted_double, shift) = solved?;
         self.valid = true;
         self.last_shift = shift;
+        // Where even double precision needed a shift, the fault was not with single precision.
+        if single_failed && shift == 0.0 {
+            self.singles_barred = BARRED;
+        }
         let report = report(&outcome, analysed);
         Ok(LinearReport { iterations: report.iterations + wasted + wasted_double, shift, ..report })
     }

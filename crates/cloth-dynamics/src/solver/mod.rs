@@ -119,7 +119,7 @@ pub enum Precision {
     /// Double precision.
     Double,
     /// Single precision with a few iterations of conjugate gradients on top, which costs about half;
-    /// double precision for the rest of a pattern's life once single precision has failed.
+    /// double precision for a while after that has failed or needed many iterations.
     #[default]
     Mixed,
 }

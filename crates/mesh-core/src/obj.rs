@@ -1,1 +1,0 @@
-//! OBJ (to come)

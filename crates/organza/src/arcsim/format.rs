@@ -1,0 +1,176 @@
+//! The keys of ARCSim's scene files. Kept to what the files say; what it means is in `translate`.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::scene::format::{
+    BendingModel, Camera, Integrator, LinearSolver, Newton, Recording,
+};
+
+/// A scene of ARCSim.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArcsimFile {
+    // One of two ways to give time.
+    pub(super) frame_time: Option<f64>,
+    pub(super) frame_steps: Option<u32>,
+    pub(super) end_time: Option<f64>,
+    pub(super) end_frame: Option<u32>,
+    pub(super) timestep: Option<f64>,
+    pub(super) save_frames: Option<u32>,
+    pub(super) duration: Option<f64>,
+    pub(super) cloths: Vec<ArcsimCloth>,
+    #[serde(default)]
+    pub(super) motions: Vec<Vec<ArcsimKeyframe>>,
+    #[serde(default)]
+    pub(super) handles: Vec<ArcsimHandle>,
+    pub(super) obstacles: Option<Value>,
+    pub(super) morphs: Option<Value>,
+    pub(super) gravity: Option<[f64; 3]>,
+    pub(super) wind: Option<ArcsimWind>,
+    // Contact is not simulated, so friction changes nothing.
+    pub(super) friction: Option<f64>,
+    pub(super) obs_friction: Option<f64>,
+    #[serde(default)]
+    pub(super) disable: Vec<String>,
+    #[serde(default)]
+    pub(super) magic: Magic,
+    /// Settings that ARCSim has no words for.
+    #[serde(default)]
+    pub(super) organza: Extras,
+}
+
+/// Settings that ARCSim has no words for.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Extras {
+    pub(super) name: Option<String>,
+    pub(super) integrator: Option<Integrator>,
+    pub(super) newton: Option<Newton>,
+    pub(super) linear_solver: Option<LinearSolver>,
+    pub(super) linear_tolerance: Option<f64>,
+    pub(super) bending: Option<BendingModel>,
+    pub(super) camera: Option<Camera>,
+    pub(super) recording: Option<Recording>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArcsimCloth {
+    pub(super) mesh: String,
+    pub(super) transform: Option<ArcsimTransform>,
+    pub(super) velocity: Option<ArcsimVelocity>,
+    #[serde(default)]
+    pub(super) materials: Vec<ArcsimMaterial>,
+    pub(super) remeshing: Option<ArcsimRemeshing>,
+    /// Of version 0.3.
+    pub(super) reference: Option<Value>,
+}
+
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArcsimTransform {
+    pub(super) scale: Option<f64>,
+    /// Angle (degrees), then the axis.
+    pub(super) rotate: Option<[f64; 4]>,
+    pub(super) translate: Option<[f64; 3]>,
+}
+
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArcsimVelocity {
+    pub(super) linear: Option<[f64; 3]>,
+    pub(super) angular: Option<[f64; 3]>,
+    pub(super) origin: Option<[f64; 3]>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArcsimMaterial {
+    pub(super) data: Option<String>,
+    pub(super) thicken: Option<f64>,
+    pub(super) density_mult: Option<f64>,
+    pub(super) stretching_mult: Option<f64>,
+    pub(super) bending_mult: Option<f64>,
+    pub(super) damping: Option<f64>,
+    pub(super) strain_limits: Option<[f64; 2]>,
+    pub(super) yield_curv: Option<Value>,
+    pub(super) weakening: Option<Value>,
+    // Of version 0.3: a material without measurements, plasticity and fracture.
+    pub(super) thickness: Option<Value>,
+    pub(super) density: Option<Value>,
+    pub(super) elastic_modulus: Option<Value>,
+    pub(super) poisson_ratio: Option<Value>,
+    pub(super) bending_factor: Option<Value>,
+    pub(super) yield_stretch: Option<Value>,
+    pub(super) plastic_flow: Option<Value>,
+    pub(super) toughness: Option<Value>,
+    pub(super) bend_width: Option<Value>,
+    pub(super) initiation_factor: Option<Value>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArcsimRemeshing {
+    pub(super) refine_angle: Option<f64>,
+    pub(super) refine_compression: Option<f64>,
+    pub(super) refine_velocity: Option<f64>,
+    pub(super) size: Option<[f64; 2]>,
+    pub(super) aspect_min: Option<f64>,
+    /// Of version 0.3.
+    pub(super) refine_fracture: Option<Value>,
+}
+
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArcsimWind {
+    pub(super) density: Option<f64>,
+    pub(super) velocity: Option<[f64; 3]>,
+    pub(super) drag: Option<f64>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArcsimKeyframe {
+    pub(super) time: f64,
+    pub(super) transform: Option<ArcsimTransform>,
+    pub(super) velocity: Option<Value>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArcsimHandle {
+    #[serde(rename = "type")]
+    pub(super) kind: Option<String>,
+    pub(super) cloth: Option<u32>,
+    pub(super) nodes: Option<Vec<u32>>,
+    pub(super) label: Option<Value>,
+    /// Index into the motions; −1 for none.
+    pub(super) motion: Option<i64>,
+    pub(super) start_time: Option<f64>,
+    pub(super) end_time: Option<f64>,
+    pub(super) fade_time: Option<f64>,
+    // Of circle handles.
+    pub(super) circumference: Option<Value>,
+    pub(super) u: Option<Value>,
+    pub(super) center: Option<Value>,
+    pub(super) axis0: Option<Value>,
+    pub(super) axis1: Option<Value>,
+}
+
+/// Constants that ARCSim keeps in one place. Those of contact change nothing here.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct Magic {
+    pub(super) fixed_high_res_mesh: Option<bool>,
+    pub(super) handle_stiffness: Option<f64>,
+    pub(super) collision_stiffness: Option<f64>,
+    pub(super) repulsion_thickness: Option<f64>,
+    pub(super) projection_thickness: Option<f64>,
+    pub(super) edge_flip_threshold: Option<f64>,
+    pub(super) rib_stiffening: Option<f64>,
+    pub(super) combine_tensors: Option<bool>,
+    pub(super) preserve_creases: Option<bool>,
+    /// Of version 0.3.
+    pub(super) add_jitter: Option<bool>,
+}

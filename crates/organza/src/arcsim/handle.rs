@@ -1,0 +1,107 @@
+//! Handles and motions of ARCSim.
+
+use super::cloth::translate_transform;
+use super::format::{ArcsimHandle, ArcsimKeyframe, Magic};
+use super::translate::Notes;
+use crate::scene::format::{ClothRef, HandleFile, Select};
+use crate::scene::motion::{Interpolation, Keyframe, Motion};
+use crate::scene::typed::suggestion;
+
+/// Stiffness of ARCSim's handles where the scene names none (N/m).
+const HANDLE_STIFFNESS_N_PER_M: f64 = 1e3;
+
+/// Translates the handles on nodes; complains of the others and leaves them out.
+pub(super) fn translate(
+    handles: &[ArcsimHandle],
+    motions: &[Vec<ArcsimKeyframe>],
+    magic: &Magic,
+    notes: &mut Notes,
+) -> Vec<HandleFile> {
+    let mut translated = Vec::new();
+    for (theirs, handle) in handles.iter().enumerate() {
+        let ours = format!("handles[{}]", translated.len());
+        let theirs = format!("handles[{theirs}]");
+        let Some(nodes) = nodes(handle, &theirs, notes) else { continue };
+        for (our_key, their_key) in
+            [("cloth", "cloth"), ("select", "nodes"), ("start_s", "start_time"), ("end_s", "end_time")]
+        {
+            notes.rename(&format!("{ours}.{our_key}"), &format!("{theirs}.{their_key}"));
+        }
+        notes.rename(&format!("{ours}.select.vertices"), &format!("{theirs}.nodes"));
+        notes.rename(&format!("{ours}.stiffness_n_per_m"), "magic.handle_stiffness");
+        if handle.fade_time.is_some_and(|seconds| seconds > 0.0) {
+            notes.unsupported(&format!("{theirs}.fade_time"), "handles that fade");
+        }
+        let motion = motion(handle, motions, &ours, &theirs, notes);
+        translated.push(HandleFile {
+            cloth: ClothRef::Index(handle.cloth.unwrap_or(0)),
+            select: Select::Vertices(nodes),
+            motion,
+            start_s: handle.start_time.unwrap_or(0.0),
+            end_s: handle.end_time,
+            stiffness_n_per_m: Some(magic.handle_stiffness.unwrap_or(HANDLE_STIFFNESS_N_PER_M)),
+        });
+    }
+    translated
+}
+
+/// The nodes of a handle that is on nodes.
+fn nodes(handle: &ArcsimHandle, at: &str, notes: &mut Notes) -> Option<Vec<u32>> {
+    const KINDS: [&str; 3] = ["node", "circle", "glue"];
+    match handle.kind.as_deref().unwrap_or("node") {
+        "node" if handle.label.as_ref().is_some_and(|label| label.as_i64() != Some(-1)) => {
+            notes.unsupported(&format!("{at}.label"), "handles by label");
+            None
+        }
+        "node" => {
+            if handle.nodes.is_none() {
+                notes.complain(at, "key `nodes` is missing");
+            }
+            handle.nodes.clone()
+        }
+        kind @ ("circle" | "glue") => {
+            notes.unsupported(&format!("{at}.type"), &format!("{kind} handles"));
+            None
+        }
+        kind => {
+            let hint = suggestion(kind, &KINDS);
+            notes.complain(&format!("{at}.type"), format!("unknown kind of handle `{kind}`{hint}"));
+            None
+        }
+    }
+}
+
+fn motion(
+    handle: &ArcsimHandle,
+    motions: &[Vec<ArcsimKeyframe>],
+    ours: &str,
+    theirs: &str,
+    notes: &mut Notes,
+) -> Option<Motion> {
+    let index = handle.motion.filter(|index| *index != -1)?;
+    let index = usize::try_from(index).unwrap_or(usize::MAX);
+    let Some(keyframes) = motions.get(index) else {
+        if notes.has_motion_file {
+            return None;
+        }
+        let n = motions.len();
+        let message = format!("there is no such motion, the scene has {n}");
+        notes.complain(&format!("{theirs}.motion"), message);
+        return None;
+    };
+    let theirs = format!("motions[{index}]");
+    let keyframes = keyframes.iter().enumerate().map(|(k, key)| {
+        let (our_key, their_key) = (format!("{ours}.motion.keyframes[{k}]"), format!("{theirs}[{k}]"));
+        if key.velocity.as_ref().is_some_and(crate::scene::unsupported::asks) {
+            notes.unsupported(&format!("{their_key}.velocity"), "velocities of keyframes");
+        }
+        notes.rename(&format!("{our_key}.time_s"), &format!("{their_key}.time"));
+        notes.rename(&format!("{our_key}.transform"), &format!("{their_key}.transform"));
+        let paths = [format!("{our_key}.transform"), format!("{their_key}.transform")];
+        let transform = translate_transform(key.transform, paths.each_ref().map(|p| &**p), notes);
+        Keyframe { time_s: key.time, transform }
+    });
+    let keyframes = keyframes.collect();
+    notes.rename(&format!("{ours}.motion.keyframes"), &theirs);
+    Some(Motion { interpolation: Interpolation::Smooth, keyframes })
+}

@@ -1,0 +1,26 @@
+//! Reads scenes of ARCSim 0.2.1 and translates them to the project's own format.
+//!
+//! What ARCSim's files mean, as far as this version simulates it:
+//!
+//! | ARCSim | here |
+//! |---|---|
+//! | `frame_time`, `frame_steps` (or `timestep`, `save_frames`) | frame rate and substeps |
+//! | `end_time`, `end_frame`, `duration` | number of frames |
+//! | `rotate: [angle°, x, y, z]` | axis and angle |
+//! | `thicken` | multiplies density, stretching, bending |
+//! | `damping` of a material | Kelvin–Voigt time (s) |
+//! | node handles | springs of 10³ N/m, or `magic.handle_stiffness` |
+//! | `motions` | smooth keyframes, at rest at both ends |
+//! | `disable` | leaves the part out |
+//!
+//! Plasticity, obstacles, morphs, fracture, handles other than on nodes and the like are collected
+//! as not supported, each with its place. A key `organza`, unknown to ARCSim, may hold `name`,
+//! `integrator`, `newton`, `linear_solver`, `linear_tolerance`, `bending`, `camera` and
+//! `recording` as in the project's own scenes.
+
+mod cloth;
+mod format;
+mod handle;
+mod translate;
+
+pub(crate) use translate::{is_arcsim, read};

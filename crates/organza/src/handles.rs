@@ -1,0 +1,217 @@
+//! What holds vertices: pins, clamps and keyframed handles, in step with a changing mesh.
+
+use crate::scene;
+use crate::scene::format::{Corner, Select, Side};
+use crate::scene::motion::Motion;
+use cloth_dynamics::Constraints;
+use mesh_core::{ClothState, Edit, Material2, Mesh, VertexId, World3};
+use nalgebra::Point3;
+
+/// One handle on the running mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Handle {
+    /// Its number in the scene.
+    pub number: usize,
+    /// Held vertices by lasting name, with where they were when the handle took hold (m).
+    pub held: Vec<(u64, Option<World3>)>,
+    /// True if it holds a line or an area: vertices that appear between held ones are held too.
+    region: bool,
+    motion: Option<Motion>,
+    start: f64,
+    end: f64,
+    stiffness: Option<f64>,
+}
+
+/// All handles of a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Handles {
+    handles: Vec<Handle>,
+}
+
+/// Slack in comparing times (s): steps add up with rounding.
+const INSTANT: f64 = 1e-9;
+
+impl Handles {
+    /// Adds a handle on a cloth whose vertices start at `first_vertex` of the common mesh.
+    ///
+    /// # Errors
+    /// If it selects a vertex that does not exist, or nothing at all.
+    pub fn add(
+        &mut self,
+        number: usize,
+        handle: &scene::Handle,
+        mesh: &Mesh,
+        vertex_of_file: Option<&[Option<VertexId>]>,
+        first_vertex: u32,
+    ) -> Result<(), String> {
+        let mut chosen = select(&handle.select, mesh, vertex_of_file)?;
+        chosen.sort_unstable();
+        chosen.dedup();
+        if chosen.is_empty() {
+            return Err("selects no vertex".into());
+        }
+        self.handles.push(Handle {
+            number,
+            held: chosen.iter().map(|v| (u64::from(v.0 + first_vertex), None)).collect(),
+            region: !matches!(handle.select, Select::Vertices(_) | Select::Corners(_)),
+            motion: handle.motion.clone(),
+            start: handle.start_s,
+            end: handle.end_s,
+            stiffness: handle.stiffness_n_per_m,
+        });
+        Ok(())
+    }
+
+    /// The handles.
+    pub fn list(&self) -> &[Handle] {
+        &self.handles
+    }
+
+    /// The handles, for restoring a checkpoint.
+    pub fn list_mut(&mut self) -> &mut [Handle] {
+        &mut self.handles
+    }
+
+    /// Names of all vertices that must not be removed.
+    pub fn names(&self) -> Vec<u64> {
+        self.handles.iter().flat_map(|h| h.held.iter().map(|&(uid, _)| uid)).collect()
+    }
+
+    /// Handles that take hold at or before `time` (s) note where their vertices are now.
+    pub fn take_hold(&mut self, cloth: &ClothState, time: f64) {
+        let mut index = None;
+        for handle in self.handles.iter_mut().filter(|h| h.start <= time + INSTANT) {
+            if handle.held.iter().any(|(_, home)| home.is_none()) {
+                let index = index.get_or_insert_with(|| by_name(&cloth.mesh));
+                for (uid, home) in handle.held.iter_mut().filter(|(_, home)| home.is_none()) {
+                    *home = lookup(index, *uid).map(|i| cloth.x[i as usize]);
+                }
+            }
+        }
+    }
+
+    /// What is held where at `time` (s); `names` maps lasting names to vertices, see [`by_name`].
+    pub fn constraints(&self, names: &[(u64, u32)], time: f64) -> Constraints {
+        let mut out = Constraints::default();
+        for handle in &self.handles {
+            if time < handle.start - INSTANT || time > handle.end + INSTANT {
+                continue;
+            }
+            let moved = handle.motion.as_ref().map(|m| m.at(time) * m.at(handle.start).inverse());
+            for &(uid, home) in &handle.held {
+                let (Some(i), Some(home)) = (lookup(names, uid), home) else { continue };
+                let x = moved.map_or(home, |m| m.transform_point(&Point3::from(home)).coords);
+                match handle.stiffness {
+                    None => out.fixed.push((i, x)),
+                    Some(k) => out.springs.push((i, x, k)),
+                }
+            }
+        }
+        out
+    }
+
+    /// Follows the edits of a remeshing call: `before` are the names before it.
+    pub fn follow(&mut self, before: &[u64], mut next_uid: u64, edits: &[Edit]) {
+        if self.handles.iter().all(|h| !h.region) {
+            return;
+        }
+        let mut names = before.to_vec();
+        for edit in edits {
+            match *edit {
+                Edit::Split { a, b, .. } => {
+                    let (a, b) = (names[a.index()], names[b.index()]);
+                    for handle in self.handles.iter_mut().filter(|h| h.region) {
+                        let find = |uid| handle.held.iter().find(|(u, _)| *u == uid);
+                        if let (Some((_, x_a)), Some((_, x_b))) = (find(a), find(b)) {
+                            let home = x_a.zip(*x_b).map(|(a, b)| (a + b) * 0.5);
+                            handle.held.push((next_uid, home));
+                        }
+                    }
+                    names.push(next_uid);
+                    next_uid += 1;
+                }
+                Edit::Flip { .. } => {}
+                Edit::Collapse { removed, .. } => {
+                    names.swap_remove(removed.index());
+                }
+            }
+        }
+    }
+}
+
+/// Names of a mesh's vertices with their indices, sorted.
+pub fn by_name(mesh: &Mesh) -> Vec<(u64, u32)> {
+    let mut names: Vec<(u64, u32)> = mesh.uids().iter().copied().zip(0..).collect();
+    names.sort_unstable();
+    names
+}
+
+fn lookup(names: &[(u64, u32)], uid: u64) -> Option<u32> {
+    names.binary_search_by_key(&uid, |&(u, _)| u).ok().map(|k| names[k].1)
+}
+
+fn select(
+    select: &Select,
+    mesh: &Mesh,
+    vertex_of_file: Option<&[Option<VertexId>]>,
+) -> Result<Vec<VertexId>, String> {
+    let points = material_points(mesh);
+    let low = points.iter().fold(Material2::repeat(f64::INFINITY), |a, (_, u)| a.inf(u));
+    let high = points.iter().fold(Material2::repeat(f64::NEG_INFINITY), |a, (_, u)| a.sup(u));
+    let slack = 1e-9 * (high - low).norm();
+    let inside = |min: Material2, max: Material2| {
+        let keep = |(_, u): &&(VertexId, Material2)| {
+            u.x >= min.x - slack
+                && u.y >= min.y - slack
+                && u.x <= max.x + slack
+                && u.y <= max.y + slack
+        };
+        points.iter().filter(keep).map(|&(v, _)| v).collect::<Vec<_>>()
+    };
+    match select {
+        Select::Vertices(numbers) => {
+            let n = vertex_of_file.map_or(mesh.n_vertices(), <[_]>::len);
+            let one = |&k: &u32| match vertex_of_file {
+                Some(map) => map.get(k as usize).copied().flatten(),
+                None => ((k as usize) < n).then_some(VertexId(k)),
+            };
+            let missing =
+                |k: &u32| format!("there is no vertex {k} in a cloth of {n} vertices");
+            numbers.iter().map(|k| one(k).ok_or_else(|| missing(k))).collect()
+        }
+        Select::Corners(corners) => Ok(corners
+            .iter()
+            .filter_map(|corner| {
+                let at = match corner {
+                    Corner::LowerLeft => low,
+                    Corner::LowerRight => Material2::new(high.x, low.y),
+                    Corner::UpperRight => high,
+                    Corner::UpperLeft => Material2::new(low.x, high.y),
+                };
+                let distance = |u: &Material2| (u - at).norm_squared();
+                points.iter().min_by(|a, b| distance(&a.1).total_cmp(&distance(&b.1)))
+            })
+            .map(|&(v, _)| v)
+            .collect()),
+        Select::Sides(sides) => Ok(sides
+            .iter()
+            .flat_map(|side| match side {
+                Side::Left => inside(low, Material2::new(low.x, high.y)),
+                Side::Right => inside(Material2::new(high.x, low.y), high),
+                Side::Lower => inside(low, Material2::new(high.x, low.y)),
+                Side::Upper => inside(Material2::new(low.x, high.y), high),
+            })
+            .collect()),
+        Select::Box(area) => Ok(inside(area.min.into(), area.max.into())),
+        Select::Boundary => {
+            Ok(mesh.vertices().filter(|&v| mesh.is_boundary_vertex(v)).collect())
+        }
+        Select::All => Ok(mesh.vertices().collect()),
+    }
+}
+
+/// Every vertex with each of its material coordinates.
+fn material_points(mesh: &Mesh) -> Vec<(VertexId, Material2)> {
+    let corners = mesh.triangles().iter().zip(mesh.material());
+    corners.flat_map(|(t, u)| [0, 1, 2].map(|k| (VertexId(t[k]), u[k]))).collect()
+}

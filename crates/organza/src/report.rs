@@ -1,0 +1,168 @@
+//! What each frame of a run reports.
+
+use crate::world::World;
+use cloth_dynamics::{RestTriangle, SolveReport, principal_stretches};
+use mesh_core::ClothState;
+use remesh::RemeshReport;
+use serde::{Deserialize, Serialize};
+
+/// Seconds of wall time by stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Seconds {
+    /// The whole frame (s).
+    pub total: f64,
+    /// Forces and matrix pattern after a change of mesh (s).
+    pub build: f64,
+    /// Forces and matrix entries (s).
+    pub assembly: f64,
+    /// Linear solver (s).
+    pub linear: f64,
+    /// Energies in the line search (s).
+    pub energy: f64,
+    /// Sizing field (s).
+    pub sizing: f64,
+    /// Mesh edits (s).
+    pub remesh: f64,
+}
+
+impl Seconds {
+    pub(crate) fn solve(&mut self, solve: &SolveReport) {
+        self.assembly = solve.assembly_s;
+        self.linear = solve.linear_s;
+        self.energy = solve.energy_s;
+    }
+}
+
+/// Extreme principal stretches over all triangles, at the end of the steps and before remeshing.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StretchRange {
+    /// Smallest (1).
+    pub min: f64,
+    /// Largest (1).
+    pub max: f64,
+}
+
+impl StretchRange {
+    /// Measures a cloth.
+    pub fn of(cloth: &ClothState) -> StretchRange {
+        let mut range = StretchRange { min: f64::INFINITY, max: 0.0 };
+        for (rest, t) in RestTriangle::all(cloth).iter().zip(cloth.mesh.triangle_ids()) {
+            let ([high, low], _) =
+                principal_stretches(&rest.deformation_gradient(&cloth.corners(t)));
+            range.min = range.min.min(low);
+            range.max = range.max.max(high);
+        }
+        range
+    }
+}
+
+/// Remeshing of one frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RemeshSummary {
+    /// Split edges.
+    pub splits: usize,
+    /// Flipped edges.
+    pub flips: usize,
+    /// Removed vertices.
+    pub collapses: usize,
+    /// Smallest aspect of a triangle in material space (1).
+    pub min_aspect: f64,
+    /// True if the mesh could not be made as fine as wanted.
+    pub limit_reached: bool,
+}
+
+/// Report of one frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameReport {
+    /// Number of the frame; 0 is the initial state.
+    pub frame: u64,
+    /// Simulated time (s).
+    pub time_s: f64,
+    /// Vertices after remeshing.
+    pub vertices: usize,
+    /// Triangles after remeshing.
+    pub faces: usize,
+    /// Steps.
+    pub substeps: u32,
+    /// Steps that failed and were redone in halves.
+    pub retries: u32,
+    /// Newton iterations.
+    pub newton_iterations: usize,
+    /// Iterations of the linear solver.
+    pub linear_iterations: usize,
+    /// Numeric factorisations.
+    pub factorisations: usize,
+    /// Symbolic analyses.
+    pub analyses: usize,
+    /// Halvings in the line search.
+    pub halvings: usize,
+    /// Implicit stages solved.
+    pub stages: usize,
+    /// Implicit stages that stopped before they reached the tolerance.
+    pub unconverged_stages: usize,
+    /// Largest change of velocity in a last iteration (m/s).
+    pub residual_m_per_s: f64,
+    /// Extreme principal stretches.
+    pub stretch: Option<StretchRange>,
+    /// Remeshing, if the scene has any.
+    pub remesh: Option<RemeshSummary>,
+    /// Kinetic energy (J).
+    pub kinetic_energy_j: f64,
+    /// Stages that the scene does not need, and why.
+    pub skipped: Vec<String>,
+    /// Wall time.
+    pub seconds: Seconds,
+}
+
+impl FrameReport {
+    /// The report of the initial state: nothing was done.
+    pub fn initial(world: &World) -> FrameReport {
+        let solve = SolveReport::default();
+        let stretch = StretchRange::of(&world.cloth);
+        FrameReport::new(world, 0, 0, &solve, None, stretch, Seconds::default())
+    }
+
+    pub(crate) fn new(
+        world: &World,
+        substeps: u32,
+        retries: u32,
+        solve: &SolveReport,
+        remesh: Option<&RemeshReport>,
+        stretch: StretchRange,
+        seconds: Seconds,
+    ) -> FrameReport {
+        FrameReport {
+            frame: world.frame,
+            time_s: world.time(),
+            vertices: world.cloth.mesh.n_vertices(),
+            faces: world.cloth.mesh.n_triangles(),
+            substeps,
+            retries,
+            newton_iterations: solve.iterations,
+            linear_iterations: solve.linear_iterations,
+            factorisations: solve.factorisations,
+            analyses: solve.analyses,
+            halvings: solve.halvings,
+            stages: solve.stages,
+            unconverged_stages: solve.unconverged,
+            residual_m_per_s: solve.residual,
+            stretch: Some(stretch),
+            remesh: remesh.map(|r| RemeshSummary {
+                splits: r.n_splits,
+                flips: r.n_flips,
+                collapses: r.n_collapses,
+                min_aspect: r.quality.aspect_min,
+                limit_reached: r.limit_reached(),
+            }),
+            kinetic_energy_j: world.cloth.kinetic_energy(),
+            skipped: Vec::new(),
+            seconds,
+        }
+    }
+
+    pub(crate) fn with_skipped(mut self, skipped: Vec<String>) -> Self {
+        self.skipped = skipped;
+        self
+    }
+}

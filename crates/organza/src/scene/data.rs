@@ -1,0 +1,127 @@
+//! A scene that has passed every check: defaults filled in, names and files resolved.
+
+use super::format::{
+    BendingModel, Camera, Damping, Disc, Grid, Integrator, LinearSolver, Multipliers, Newton,
+    Recording, Remeshing, Select, Skirt, Spin, Tube, Wind,
+};
+use super::motion::{Motion, Transform};
+use crate::fabric::Fabric;
+
+/// Everything a run needs to know, except the bytes of mesh files.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Name of the scene.
+    pub name: String,
+    /// Number of frames after the first, at least 1.
+    pub frames: u32,
+    /// Frame rate (1/s).
+    pub frames_per_second: f64,
+    /// Time steps per frame, at least 1.
+    pub substeps: u32,
+    /// Acceleration of gravity (m/s²).
+    pub gravity: [f64; 3],
+    /// Moving air.
+    pub wind: Option<Wind>,
+    /// How time steps are made.
+    pub integrator: Integrator,
+    /// The nonlinear solve.
+    pub newton: Newton,
+    /// The linear solver.
+    pub linear_solver: LinearSolver,
+    /// Relative residual at which iterative linear solvers stop.
+    pub linear_tolerance: f64,
+    /// The pieces of cloth, at least one.
+    pub cloths: Vec<Cloth>,
+    /// What holds or moves them.
+    pub handles: Vec<Handle>,
+    /// The view of pictures.
+    pub camera: Option<Camera>,
+    /// What is recorded.
+    pub recording: Recording,
+}
+
+impl Scene {
+    /// Time from frame to frame (s).
+    #[must_use]
+    pub fn frame_s(&self) -> f64 {
+        1.0 / self.frames_per_second
+    }
+
+    /// Length of a time step (s).
+    #[must_use]
+    pub fn step_s(&self) -> f64 {
+        1.0 / (self.frames_per_second * f64::from(self.substeps))
+    }
+
+    /// Unit vector against gravity; z where there is none.
+    #[must_use]
+    pub fn up(&self) -> [f64; 3] {
+        let up = -nalgebra::Vector3::from(self.gravity);
+        up.try_normalize(0.0).map_or([0.0, 0.0, 1.0], Into::into)
+    }
+}
+
+/// A piece of cloth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cloth {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Where the mesh comes from.
+    pub mesh: MeshSource,
+    /// Placement; its scale applies to the flat pattern as well.
+    pub transform: Transform,
+    /// What the cloth is made of.
+    pub fabric: Fabric,
+    /// Multipliers of the fabric, `thicken` included.
+    pub multipliers: Multipliers,
+    /// Smallest and largest principal stretch, min < 1 < max.
+    pub strain_limits: Option<[f64; 2]>,
+    /// How bending is measured.
+    pub bending: BendingModel,
+    /// Damping inside the cloth.
+    pub damping: Damping,
+    /// Velocity at the start (m/s).
+    pub initial_velocity: [f64; 3],
+    /// Rotation at the start, added to the velocity.
+    pub initial_spin: Option<Spin>,
+    /// How the mesh adapts; absent for a fixed mesh.
+    pub remeshing: Option<Remeshing>,
+}
+
+/// Where a mesh comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum MeshSource {
+    /// A Wavefront OBJ file, and one with the flat pattern. The names are keys of the loaded
+    /// sources.
+    Obj {
+        /// The mesh as it starts.
+        obj: String,
+        /// Its flat pattern.
+        material_obj: Option<String>,
+    },
+    /// A flat rectangle.
+    Grid(Grid),
+    /// A flat disc.
+    Disc(Disc),
+    /// A sleeve.
+    Tube(Tube),
+    /// A skirt.
+    Skirt(Skirt),
+}
+
+/// Holds or moves vertices of a cloth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Handle {
+    /// Index into the scene's cloths.
+    pub cloth: usize,
+    /// The vertices held.
+    pub select: Select,
+    /// How they move: by `motion.at(t) * motion.at(start_s).inverse()`.
+    pub motion: Option<Motion>,
+    /// When the handle takes hold (s).
+    pub start_s: f64,
+    /// When it lets go (s); infinite for never.
+    pub end_s: f64,
+    /// Stiffness of the springs (N/m); absent for an exact hold.
+    pub stiffness_n_per_m: Option<f64>,
+}

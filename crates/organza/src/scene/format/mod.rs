@@ -1,0 +1,143 @@
+//! The scene format, key by key. These types are what a scene file may say; their comments are the
+//! published JSON schema. [`Scene`](super::Scene) is what a valid file means.
+
+mod cloth;
+mod handle;
+mod mesh;
+mod solver;
+
+pub use cloth::*;
+pub use handle::*;
+pub use mesh::*;
+pub use solver::*;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A scene of Organza. Lengths in metres, masses in kilograms, times in seconds; the text may be
+/// JSON5 (comments, trailing commas, keys without quotes).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "Organza scene")]
+pub struct SceneFile {
+    /// Where this schema is, for editors.
+    #[serde(rename = "$schema", default)]
+    pub schema: Option<String>,
+    /// Name of the scene; default is the name of the file.
+    #[serde(default)]
+    pub name: Option<String>,
+    /// Number of frames to simulate after the first, which shows the start.
+    #[schemars(range(min = 1))]
+    pub frames: u32,
+    /// Frame rate (1/s).
+    #[serde(default = "default::frames_per_second")]
+    pub frames_per_second: f64,
+    /// Time steps per frame. Remeshing happens once a frame.
+    #[serde(default = "default::substeps")]
+    #[schemars(range(min = 1))]
+    pub substeps: u32,
+    /// Acceleration of gravity (m/s²). Its opposite is "up" in pictures.
+    #[serde(default = "default::gravity")]
+    pub gravity: [f64; 3],
+    /// Moving air; absent means none.
+    #[serde(default)]
+    pub wind: Option<Wind>,
+    /// How time steps are made.
+    #[serde(default)]
+    pub integrator: Integrator,
+    /// The nonlinear solve of each time step.
+    #[serde(default)]
+    pub newton: Newton,
+    /// The linear solver inside the nonlinear one.
+    #[serde(default)]
+    pub linear_solver: LinearSolver,
+    /// Relative residual at which iterative linear solvers stop.
+    #[serde(default = "default::linear_tolerance")]
+    pub linear_tolerance: f64,
+    /// The pieces of cloth.
+    #[schemars(length(min = 1))]
+    pub cloths: Vec<ClothFile>,
+    /// What holds or moves vertices of the cloths.
+    #[serde(default)]
+    pub handles: Vec<HandleFile>,
+    /// The view of pictures; absent means one that shows everything.
+    #[serde(default)]
+    pub camera: Option<Camera>,
+    /// What is recorded besides the frames.
+    #[serde(default)]
+    pub recording: Recording,
+}
+
+/// Air that pushes cloth. On an area A with normal n, moving at v relative to the air, acts the
+/// force −(density |vₙ| vₙ n + drag vₜ) A, where vₙ = v·n and vₜ = v − vₙ n.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Wind {
+    /// Velocity of the air (m/s).
+    pub velocity: [f64; 3],
+    /// Density of the air (kg/m³).
+    #[serde(default = "default::air_density")]
+    pub density: f64,
+    /// Tangential drag per area and speed (N·s/m³).
+    #[serde(default)]
+    pub drag: f64,
+}
+
+/// The view of pictures. It does not influence the simulation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Camera {
+    /// Where the camera stands (m).
+    pub position: [f64; 3],
+    /// The point it looks at (m).
+    pub target: [f64; 3],
+    /// The direction that is up in the picture; default is against gravity.
+    #[serde(default)]
+    pub up: Option<[f64; 3]>,
+    /// Opening angle from the lower to the upper edge (degrees).
+    #[serde(default = "default::vertical_fov_deg")]
+    pub vertical_fov_deg: f64,
+    /// Width and height (pixels).
+    #[serde(default = "default::resolution")]
+    pub resolution: [u32; 2],
+}
+
+/// What is recorded besides the frames.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Recording {
+    /// A complete state, from which a run can be continued, is kept every so many frames.
+    #[schemars(range(min = 1))]
+    pub checkpoint_every_frames: u32,
+}
+
+impl Default for Recording {
+    fn default() -> Self {
+        Self { checkpoint_every_frames: 25 }
+    }
+}
+
+/// Values of keys that a scene leaves out.
+mod default {
+    pub(super) fn frames_per_second() -> f64 {
+        25.0
+    }
+    pub(super) fn substeps() -> u32 {
+        8
+    }
+    pub(super) fn gravity() -> [f64; 3] {
+        [0.0, 0.0, -9.81]
+    }
+    pub(super) fn linear_tolerance() -> f64 {
+        1e-8
+    }
+    pub(super) fn air_density() -> f64 {
+        1.2
+    }
+    pub(super) fn vertical_fov_deg() -> f64 {
+        40.0
+    }
+    pub(super) fn resolution() -> [u32; 2] {
+        [1280, 720]
+    }
+}

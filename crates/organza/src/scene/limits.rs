@@ -1,0 +1,41 @@
+//! The largest numbers that a scene may ask for. Each stands far beyond what cloth needs, and far
+//! below where arithmetic or memory fails.
+
+/// Size of a scene or material file (bytes).
+pub const MAX_TEXT_BYTES: u64 = 64 << 20;
+/// Size of a mesh file (bytes).
+pub const MAX_MESH_BYTES: u64 = 1 << 30;
+/// Coordinates, lengths and offsets (m).
+pub const MAX_COORDINATE_M: f64 = 1e6;
+/// Speeds of cloth and wind (m/s).
+pub const MAX_SPEED_M_PER_S: f64 = 1e4;
+/// Angular speed (rad/s).
+pub const MAX_SPIN_RAD_PER_S: f64 = 1e4;
+/// Acceleration of gravity (m/s²).
+pub const MAX_GRAVITY_M_PER_S2: f64 = 1e4;
+/// Stretching (N/m), bending (N·m) and handle stiffness (N/m), multipliers included.
+pub const MAX_STIFFNESS: f64 = 1e12;
+/// Mass per area of cloth (kg/m²), multipliers included.
+pub const MAX_DENSITY_KG_PER_M2: f64 = 1e4;
+/// Mass per volume of air (kg/m³).
+pub const MAX_AIR_DENSITY_KG_PER_M3: f64 = 1e4;
+/// Multipliers and scales, and the inverse of the smallest one.
+pub const MAX_FACTOR: f64 = 1e6;
+/// Triangles that a generator makes.
+pub const MAX_TRIANGLES: f64 = mesh_core::generate::MAX_TRIANGLES as f64;
+/// Smallest length of a generated mesh (m).
+pub const MIN_SIZE_M: f64 = mesh_core::generate::MIN_SIZE;
+/// Vertices that remeshing may make.
+pub const MAX_VERTICES: f64 = 2e7;
+/// Largest aspect bound for which edits are still to be found, and the smallest that is one.
+pub const ASPECT_RANGE: [f64; 2] = [0.001, 0.5];
+/// Frames times substeps.
+pub const MAX_STEPS: f64 = 1e9;
+/// Frames per second (1/s), and the inverse of the slowest rate.
+pub const MAX_FRAME_RATE: f64 = 1e6;
+/// Simulated time (s).
+pub const MAX_TIME_S: f64 = 1e9;
+/// Damping (1/s) and damping time (s).
+pub const MAX_DAMPING: f64 = 1e6;
+/// Width and height of pictures (pixels).
+pub const MAX_PICTURE_PX: u32 = 16_384;

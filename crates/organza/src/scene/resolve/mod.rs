@@ -1,0 +1,164 @@
+//! From what a scene file says to what it means: every range checked, every name and file found.
+
+mod cloth;
+mod handle;
+mod mesh;
+
+use super::check::{At, Complaints, beyond};
+use super::data::Scene;
+use super::files::{Dialect, FileRequest, Resolver, Source};
+use super::format::{Camera, SceneFile, Wind};
+use super::issue::{Issue, IssueKind};
+use super::limits;
+
+/// What resolving needs and collects.
+pub(super) struct Context<'r> {
+    pub(super) dialect: Dialect,
+    pub(super) resolver: &'r Resolver<'r>,
+    /// Complaints about the scene file.
+    pub(super) complaints: &'r Complaints,
+    /// Issues in other files.
+    pub(super) foreign: Vec<Issue>,
+    /// The files read so far.
+    pub(super) sources: Vec<Source>,
+}
+
+impl Context<'_> {
+    /// Reads a file named in the scene, once; a file that cannot be read is complained of at `at`.
+    fn read(&mut self, at: &At<'_>, name: &str, max_bytes: u64) -> Option<&[u8]> {
+        let known = self.sources.iter().position(|source| source.name == name);
+        let index = known.or_else(|| {
+            match (self.resolver)(&FileRequest { name, dialect: self.dialect, max_bytes }) {
+                Ok(bytes) => {
+                    self.sources.push(Source { name: name.to_owned(), bytes });
+                    Some(self.sources.len() - 1)
+                }
+                Err(message) => {
+                    at.report(IssueKind::File, message);
+                    None
+                }
+            }
+        });
+        index.map(|i| self.sources[i].bytes.as_slice())
+    }
+}
+
+/// Checks and resolves a scene. Complaints go to `context`; where there are any, the result may be
+/// absent or hold values that were complained of.
+pub(super) fn resolve(
+    file: SceneFile,
+    default_name: &str,
+    context: &mut Context<'_>,
+) -> Option<Scene> {
+    let top = context.complaints.at_top();
+    check_time(&file, &top);
+    check_solver(&file, &top);
+    top.key("gravity").vector(&file.gravity, limits::MAX_GRAVITY_M_PER_S2, "m/s²");
+    if let Some(wind) = &file.wind {
+        check_wind(wind, &top.key("wind"));
+    }
+    top.key("recording.checkpoint_every_frames")
+        .at_least(file.recording.checkpoint_every_frames, 1);
+    if file.cloths.is_empty() {
+        top.key("cloths").complain("a scene needs at least one cloth");
+    }
+    let names = cloth::names(&file.cloths, &top.key("cloths"));
+    let handles = handle::resolve(file.handles, &names, &top.key("handles"));
+    let cloths: Option<Vec<_>> = {
+        let resolved: Vec<_> = file
+            .cloths
+            .into_iter()
+            .zip(names)
+            .enumerate()
+            .map(|(i, (cloth, name))| {
+                cloth::resolve(cloth, name, &top.key("cloths").index(i), context)
+            })
+            .collect();
+        resolved.into_iter().collect()
+    };
+    let scene = Scene {
+        name: file.name.unwrap_or_else(|| default_name.to_owned()),
+        frames: file.frames,
+        frames_per_second: file.frames_per_second,
+        substeps: file.substeps,
+        gravity: file.gravity,
+        wind: file.wind,
+        integrator: file.integrator,
+        newton: file.newton,
+        linear_solver: file.linear_solver,
+        linear_tolerance: file.linear_tolerance,
+        cloths: cloths?,
+        handles: handles?,
+        camera: file.camera,
+        recording: file.recording,
+    };
+    if let Some(camera) = &scene.camera {
+        check_camera(camera, scene.up(), &top.key("camera"));
+    }
+    Some(scene)
+}
+
+fn check_time(file: &SceneFile, top: &At<'_>) {
+    top.key("frames").at_least(file.frames, 1);
+    top.key("substeps").at_least(file.substeps, 1);
+    let rate = file.frames_per_second;
+    top.key("frames_per_second").positive(rate, limits::MAX_FRAME_RATE, "1/s");
+    if rate > 0.0 && rate < 1.0 / limits::MAX_FRAME_RATE {
+        let limit = 1.0 / limits::MAX_FRAME_RATE;
+        top.key("frames_per_second").complain(format!("{rate:e} 1/s is below the limit of {limit:e} 1/s"));
+    }
+    let (frames, substeps) = (f64::from(file.frames), f64::from(file.substeps));
+    if frames * substeps > limits::MAX_STEPS {
+        let steps = beyond(frames * substeps, limits::MAX_STEPS, "steps");
+        top.key("frames").complain(format!("{frames} frames of {substeps} substeps: {steps}"));
+    }
+    let seconds = frames / rate;
+    if rate >= 1.0 / limits::MAX_FRAME_RATE && seconds > limits::MAX_TIME_S {
+        top.key("frames").complain(beyond(seconds, limits::MAX_TIME_S, "s"));
+    }
+}
+
+fn check_solver(file: &SceneFile, top: &At<'_>) {
+    const MOST_ITERATIONS: u32 = 10_000;
+    let newton = top.key("newton");
+    newton.key("max_iterations").at_least(file.newton.max_iterations, 1);
+    if file.newton.max_iterations > MOST_ITERATIONS {
+        let n = f64::from(file.newton.max_iterations);
+        newton.key("max_iterations").complain(beyond(n, f64::from(MOST_ITERATIONS), ""));
+    }
+    newton.key("tolerance").positive(file.newton.tolerance, limits::MAX_SPEED_M_PER_S, "m/s");
+    top.key("linear_tolerance").positive(file.linear_tolerance, 0.1, "");
+}
+
+fn check_wind(wind: &Wind, at: &At<'_>) {
+    at.key("velocity").vector(&wind.velocity, limits::MAX_SPEED_M_PER_S, "m/s");
+    at.key("density").not_negative(wind.density, limits::MAX_AIR_DENSITY_KG_PER_M3, "kg/m³");
+    at.key("drag").not_negative(wind.drag, limits::MAX_FACTOR, "N·s/m³");
+}
+
+fn check_camera(camera: &Camera, scene_up: [f64; 3], at: &At<'_>) {
+    at.key("position").coordinates(&camera.position);
+    at.key("target").coordinates(&camera.target);
+    let fov = camera.vertical_fov_deg;
+    if !(1.0..=170.0).contains(&fov) {
+        at.key("vertical_fov_deg").complain(format!("must lie between 1 and 170, got {fov}"));
+    }
+    for (i, pixels) in camera.resolution.into_iter().enumerate() {
+        let at = at.key("resolution").index(i);
+        at.at_least(pixels, 1);
+        if pixels > limits::MAX_PICTURE_PX {
+            let limit = f64::from(limits::MAX_PICTURE_PX);
+            at.complain(beyond(f64::from(pixels), limit, "pixels"));
+        }
+    }
+    let vector = nalgebra::Vector3::from;
+    let view = vector(camera.target) - vector(camera.position);
+    let up = vector(camera.up.unwrap_or(scene_up));
+    if view.norm() < 1e-9 {
+        at.key("target").complain("is where the camera stands");
+    } else if view.normalize().cross(&up).norm() < 1e-6 * up.norm().max(1e-9) {
+        at.key("up").complain(
+            "is parallel to the direction of view or zero; give an `up` across the view",
+        );
+    }
+}

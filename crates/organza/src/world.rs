@@ -1,0 +1,257 @@
+//! The world: state and policies of a running scene, and the step.
+
+use crate::build::{BuildError, Built, Garment, build};
+use crate::handles::{Handles, by_name};
+use crate::remeshing::Remeshing;
+use crate::report::{FrameReport, Seconds, StretchRange};
+use crate::scene::Loaded;
+use crate::scene::format::{Integrator, LinearSolver as Method};
+use cloth_dynamics::solver::{
+    Auto, BlockJacobiCg, LinearSettings, LinearSolver, SparseCholesky, StaleFactorCg,
+};
+use cloth_dynamics::{
+    Environment, Fabric, ImplicitEuler, NewtonSettings, Sdirk2, SolveError, SolveReport, Step,
+    System, TimeIntegrator, Wind,
+};
+use mesh_core::{ClothState, World3};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// Why a frame could not be finished. The world is as it was after the last good step.
+#[derive(Debug, thiserror::Error)]
+pub enum StepError {
+    /// A step failed at every length that was tried.
+    #[error("frame {frame}: the step at {time} s failed even when cut to {h} s: {source}")]
+    Solve {
+        /// The frame that was being made.
+        frame: u64,
+        /// Time at the start of the step (s).
+        time: f64,
+        /// The shortest step tried (s).
+        h: f64,
+        /// Why.
+        source: SolveError,
+    },
+    /// The mesh grew beyond what the system matrix can hold.
+    #[error("frame {frame}: {message}")]
+    TooLarge {
+        /// The frame that was being made.
+        frame: u64,
+        /// What was too large.
+        message: String,
+    },
+    /// A remeshing setting is out of range.
+    #[error("frame {frame}: {source}")]
+    Remesh {
+        /// The frame that was being made.
+        frame: u64,
+        /// Why.
+        source: remesh::RemeshError,
+    },
+}
+
+/// A running scene. Optional parts that the scene does not need are absent.
+pub struct World {
+    /// Number of the last finished frame; 0 is the initial state.
+    pub frame: u64,
+    /// The cloth of all garments.
+    pub cloth: ClothState,
+    /// What holds vertices.
+    pub handles: Handles,
+    /// Which panels belong to which cloth of the scene.
+    pub garments: Vec<Garment>,
+    /// What the user should know about how the scene was built.
+    pub warnings: Vec<String>,
+    fabrics: Arc<Vec<Fabric>>,
+    environment: Environment,
+    frame_s: f64,
+    substeps: u32,
+    integrator: Box<dyn TimeIntegrator>,
+    newton: NewtonSettings,
+    solver: Box<dyn LinearSolver>,
+    remeshing: Option<Remeshing>,
+    /// Forces and matrix of the current mesh; absent after the mesh has changed.
+    system: Option<System>,
+}
+
+impl std::fmt::Debug for World {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("World").field("frame", &self.frame).finish_non_exhaustive()
+    }
+}
+
+/// How often a failing step is halved before the run ends.
+const MAX_HALVINGS: u32 = 6;
+
+impl World {
+    /// Builds the world of a loaded scene.
+    ///
+    /// # Errors
+    /// See [`BuildError`].
+    pub fn new(loaded: &Loaded) -> Result<World, BuildError> {
+        let Built { cloth, fabrics, garments, handles, warnings } = build(loaded)?;
+        let scene = &loaded.scene;
+        let settings =
+            LinearSettings { tolerance: scene.linear_tolerance, ..LinearSettings::default() };
+        let solver: Box<dyn LinearSolver> = match scene.linear_solver {
+            Method::Auto => Box::new(Auto::new(settings)),
+            Method::Cholesky => Box::new(SparseCholesky::new(settings)),
+            Method::StaleCholesky => Box::new(StaleFactorCg::new(settings)),
+            Method::Pcg => Box::new(BlockJacobiCg::new(settings)),
+        };
+        let integrator: Box<dyn TimeIntegrator> = match scene.integrator {
+            Integrator::ImplicitEuler => Box::new(ImplicitEuler),
+            Integrator::Sdirk2 => Box::new(Sdirk2),
+        };
+        let wind = scene.wind.as_ref().map(|wind| Wind {
+            velocity: wind.velocity.into(),
+            density: wind.density,
+            drag: wind.drag,
+        });
+        let mut world = World {
+            frame: 0,
+            cloth,
+            handles,
+            remeshing: Remeshing::new(scene, &garments),
+            garments,
+            warnings,
+            fabrics: Arc::new(fabrics),
+            environment: Environment { gravity: World3::from(scene.gravity), wind },
+            frame_s: scene.frame_s(),
+            substeps: scene.substeps,
+            integrator,
+            newton: NewtonSettings {
+                max_iterations: scene.newton.max_iterations as usize,
+                tolerance: scene.newton.tolerance,
+            },
+            solver,
+            system: None,
+        };
+        world.system().map_err(|e| BuildError::TooLarge(e.to_string()))?;
+        Ok(world)
+    }
+
+    /// Simulated time of the last finished frame (s).
+    pub fn time(&self) -> f64 {
+        self.frame as f64 * self.frame_s
+    }
+
+    /// Makes the next frame: all its steps, then one remeshing.
+    ///
+    /// # Errors
+    /// See [`StepError`]; the frame is then not counted.
+    pub fn advance(&mut self) -> Result<FrameReport, StepError> {
+        let frame = self.frame + 1;
+        let (mut solve, mut seconds, mut retries) = (SolveReport::default(), Seconds::default(), 0);
+        let clock = Instant::now();
+        let h = self.frame_s / f64::from(self.substeps);
+        for k in 0..self.substeps {
+            let time = self.time() + f64::from(k) * h;
+            self.step(Step { time, h }, frame, 0, &mut solve, &mut retries, &mut seconds)?;
+        }
+        let stretch = StretchRange::of(&self.cloth);
+        let mut remesh = None;
+        if let Some(remeshing) = &self.remeshing {
+            let (before, next) = (self.cloth.mesh.uids().to_vec(), self.cloth.mesh.next_uid());
+            let keep = self.handles.names();
+            let (report, times) = remeshing
+                .run(&mut self.cloth, &keep)
+                .map_err(|source| StepError::Remesh { frame, source })?;
+            if report.n_edits() > 0 {
+                self.system = None;
+                self.handles.follow(&before, next, &report.journal);
+            }
+            seconds.sizing = times[0];
+            seconds.remesh = times[1];
+            remesh = Some(report);
+        }
+        self.frame = frame;
+        seconds.solve(&solve);
+        seconds.total = clock.elapsed().as_secs_f64();
+        let substeps = self.substeps;
+        let skipped = self.skipped();
+        Ok(FrameReport::new(self, substeps, retries, &solve, remesh.as_ref(), stretch, seconds)
+            .with_skipped(skipped))
+    }
+
+    /// One step; a failing one is redone in halves.
+    fn step(
+        &mut self,
+        step: Step,
+        frame: u64,
+        depth: u32,
+        solve: &mut SolveReport,
+        retries: &mut u32,
+        seconds: &mut Seconds,
+    ) -> Result<(), StepError> {
+        let clock = Instant::now();
+        self.system().map_err(|e| StepError::TooLarge { frame, message: e.to_string() })?;
+        seconds.build += clock.elapsed().as_secs_f64();
+        self.handles.take_hold(&self.cloth, step.time);
+        let names = by_name(&self.cloth.mesh);
+        let Some(system) = &mut self.system else { return Ok(()) };
+        let constraints = |time: f64| self.handles.constraints(&names, time);
+        let solver = self.solver.as_mut();
+        match self.integrator.advance(
+            &mut self.cloth,
+            system,
+            solver,
+            &constraints,
+            &self.newton,
+            step,
+        ) {
+            Ok(report) => {
+                solve.add(&report);
+                Ok(())
+            }
+            Err(source) if depth == MAX_HALVINGS => {
+                Err(StepError::Solve { frame, time: step.time, h: step.h, source })
+            }
+            Err(_) => {
+                *retries += 1;
+                let h = 0.5 * step.h;
+                for time in [step.time, step.time + h] {
+                    self.step(Step { time, h }, frame, depth + 1, solve, retries, seconds)?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// Builds forces and matrix if the mesh has changed.
+    fn system(&mut self) -> Result<(), cloth_dynamics::solver::PatternError> {
+        if self.system.is_none() {
+            self.system = Some(System::new(&self.cloth, &self.fabrics, &self.environment)?);
+        }
+        Ok(())
+    }
+
+    /// Forgets what a solver carries from step to step, so that a run that goes on from here and
+    /// one that starts from a checkpoint of this state have the same bits.
+    pub fn forget(&mut self) {
+        self.solver.reset();
+        self.system = None;
+    }
+
+    /// Names of the forces that exist.
+    pub fn force_names(&self) -> Vec<&'static str> {
+        self.system.as_ref().map(System::force_names).unwrap_or_default()
+    }
+
+    /// Stages that this scene does not need, and why.
+    fn skipped(&self) -> Vec<String> {
+        let mut skipped = Vec::new();
+        let mut note = |absent: bool, text: &str| {
+            if absent {
+                skipped.push(text.to_string());
+            }
+        };
+        note(self.remeshing.is_none(), "sizing, remeshing: all meshes are fixed");
+        note(self.environment.wind.is_none(), "wind: none in the scene");
+        let limits = self.fabrics.iter().any(|f| f.strain_limits.is_some());
+        note(!limits, "strain limits: none in the scene");
+        note(self.fabrics.iter().all(|f| f.bending.is_none()), "bending: no fabric resists it");
+        note(self.handles.list().is_empty(), "handles: none in the scene");
+        skipped
+    }
+}

@@ -1,0 +1,143 @@
+//! The driver: flip to Delaunay, split what is too long, collapse what can go.
+
+use crate::corners::CornerMetrics;
+use crate::field::SizingField;
+use crate::quality::MeshQuality;
+use crate::report::RemeshReport;
+use crate::settings::{RemeshError, RemeshSettings};
+use mesh_core::{ClothState, Edit, HalfEdge, TriangleId};
+
+/// Adapts the mesh to a sizing field (Narain2012 §4): evaluates the field once on every triangle,
+/// then [`adapt`]s.
+///
+/// # Errors
+/// If a setting is out of range or the obstacle metric does not fit; nothing is changed then.
+pub fn remesh<S: SizingField + ?Sized>(
+    cloth: &mut ClothState,
+    field: &S,
+    settings: &RemeshSettings<'_>,
+) -> Result<RemeshReport, RemeshError> {
+    let mut metrics = CornerMetrics::evaluate(cloth, field, settings)?;
+    adapt(cloth, &mut metrics, settings)
+}
+
+/// Adapts the mesh to metrics that are already at hand, which follow the edits.
+///
+/// Three passes: flip edges until the mesh is Delaunay in the metric; split invalid edges, the
+/// longest first, each followed by flips around it; collapse edges, the shortest first, each
+/// followed by flips around it. No collapse and no flip makes a valid edge invalid, so at the end
+/// every edge is valid unless the report says why not, no further collapse is admissible, and a
+/// second call with the metrics as they are now makes no edit.
+///
+/// The cost is one scan of the mesh plus the edits; every pass is bounded for any input.
+///
+/// # Errors
+/// If a setting is out of range or the metrics belong to another state of the mesh; nothing is
+/// changed then.
+pub fn adapt(
+    cloth: &mut ClothState,
+    metrics: &mut CornerMetrics,
+    settings: &RemeshSettings<'_>,
+) -> Result<RemeshReport, RemeshError> {
+    settings.check()?;
+    let (expected, got) = (cloth.mesh.epoch(), metrics.epoch);
+    if expected != got {
+        return Err(RemeshError::Stale { expected, got });
+    }
+    let mut driver = Driver::new(cloth, metrics, settings);
+    driver.flip_all();
+    driver.split_invalid();
+    driver.collapse_all();
+    Ok(driver.finish())
+}
+
+/// The state of a call.
+pub(crate) struct Driver<'a> {
+    pub(crate) cloth: &'a mut ClothState,
+    pub(crate) metrics: &'a mut CornerMetrics,
+    pub(crate) settings: &'a RemeshSettings<'a>,
+    /// Vertices that must not be removed.
+    pub(crate) kept: Vec<bool>,
+    /// Panels that must not be touched; empty if there are none.
+    fixed: Vec<bool>,
+    pub(crate) journal: Vec<Edit>,
+    /// Edges whose quadrilateral changed: to be checked for a flip.
+    pub(crate) flip_queue: Vec<HalfEdge>,
+    /// Triangles that took part in the flips of the last [`Driver::settle`].
+    pub(crate) flipped: Vec<[TriangleId; 2]>,
+    pub(crate) n_flip_limits: usize,
+    pub(crate) vertex_limit_reached: bool,
+}
+
+impl<'a> Driver<'a> {
+    fn new(
+        cloth: &'a mut ClothState,
+        metrics: &'a mut CornerMetrics,
+        settings: &'a RemeshSettings<'a>,
+    ) -> Self {
+        let mut keep = settings.keep.to_vec();
+        keep.sort_unstable();
+        let kept = if keep.is_empty() {
+            vec![false; cloth.mesh.n_vertices()]
+        } else {
+            cloth.mesh.uids().iter().map(|uid| keep.binary_search(uid).is_ok()).collect()
+        };
+        let mut fixed = Vec::new();
+        if !settings.fixed_panels.is_empty() {
+            fixed = vec![false; cloth.densities().len()];
+            for &panel in settings.fixed_panels {
+                if let Some(slot) = fixed.get_mut(panel as usize) {
+                    *slot = true;
+                }
+            }
+        }
+        Driver {
+            cloth,
+            metrics,
+            settings,
+            kept,
+            fixed,
+            journal: Vec::new(),
+            flip_queue: Vec::new(),
+            flipped: Vec::new(),
+            n_flip_limits: 0,
+            vertex_limit_reached: false,
+        }
+    }
+
+    /// True if a triangle belongs to a fixed panel.
+    #[inline]
+    pub(crate) fn is_fixed(&self, t: TriangleId) -> bool {
+        !self.fixed.is_empty() && self.fixed[self.cloth.mesh.panels()[t.index()] as usize]
+    }
+
+    /// True if a triangle at the edge belongs to a fixed panel.
+    #[inline]
+    pub(crate) fn is_locked(&self, h: HalfEdge) -> bool {
+        !self.fixed.is_empty()
+            && (self.is_fixed(h.triangle())
+                || self.cloth.mesh.twin(h).is_some_and(|g| self.is_fixed(g.triangle())))
+    }
+
+    /// Leaves the cloth without a history and reports.
+    fn finish(self) -> RemeshReport {
+        if !self.journal.is_empty() {
+            self.cloth.normalise();
+        }
+        let count = |kind: fn(&Edit) -> bool| self.journal.iter().filter(|e| kind(e)).count();
+        let quality =
+            MeshQuality::measure(self.cloth, self.metrics, self.settings.aspect_min, |h| {
+                self.is_locked(h)
+            });
+        RemeshReport {
+            n_splits: count(|e| matches!(e, Edit::Split { .. })),
+            n_flips: count(|e| matches!(e, Edit::Flip { .. })),
+            n_collapses: count(|e| matches!(e, Edit::Collapse { .. })),
+            n_bad_metrics: self.metrics.n_bad,
+            vertex_limit_reached: self.vertex_limit_reached,
+            n_flip_limits: self.n_flip_limits,
+            quality,
+            journal: self.journal,
+        }
+    }
+}

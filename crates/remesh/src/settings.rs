@@ -1,0 +1,86 @@
+//! Settings of a remeshing call and what can be wrong with them.
+
+use crate::metric::Metric;
+
+/// How to remesh. The numbers hold for a whole run; the slices name what this call must respect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RemeshSettings<'a> {
+    /// Edits do not take a triangle's [aspect](mesh_core::geometry::aspect) below this, and metrics
+    /// are made at most as anisotropic: sizes differ by at most 1 / `aspect_min` (no unit).
+    pub aspect_min: f64,
+    /// A collapse must leave all its edges shorter than 1 − `hysteresis`, so that they are not
+    /// split again at once (no unit).
+    pub hysteresis: f64,
+    /// Splitting stops at this many vertices, and the report says so.
+    pub max_vertices: usize,
+    /// Names ([`Mesh::uids`](mesh_core::Mesh::uids)) of vertices that are never removed: pins,
+    /// handles. Names that no longer exist are ignored.
+    pub keep: &'a [u64],
+    /// Panels whose triangles are left exactly as they are.
+    pub fixed_panels: &'a [u32],
+    /// Metric wanted for the proximity of obstacles, one per triangle (1/m²); handed to the sizing
+    /// field.
+    pub obstacle: Option<&'a [Metric]>,
+}
+
+impl Default for RemeshSettings<'_> {
+    fn default() -> Self {
+        RemeshSettings {
+            aspect_min: 0.2,
+            hysteresis: 0.2,
+            max_vertices: 200_000,
+            keep: &[],
+            fixed_panels: &[],
+            obstacle: None,
+        }
+    }
+}
+
+/// Why a call was refused; nothing was changed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RemeshError {
+    /// A setting out of range.
+    #[error("{name} is {value}; it must be {range}")]
+    Setting {
+        /// Which one.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        range: &'static str,
+    },
+    /// The obstacle metric does not fit the mesh.
+    #[error("the obstacle metric has {got} entries for {expected} triangles")]
+    Obstacle {
+        /// Number of triangles.
+        expected: usize,
+        /// Number of entries.
+        got: usize,
+    },
+    /// The metrics were worked out for another state of the mesh.
+    #[error("the metrics belong to epoch {got} of the mesh, which is now at {expected}")]
+    Stale {
+        /// Epoch of the mesh.
+        expected: u64,
+        /// Epoch of the metrics.
+        got: u64,
+    },
+}
+
+impl RemeshSettings<'_> {
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// [`RemeshError::Setting`] names the first value out of range.
+    pub fn check(&self) -> Result<(), RemeshError> {
+        let fail = |name, value, range| Err(RemeshError::Setting { name, value, range });
+        if !(0.0..=0.5).contains(&self.aspect_min) {
+            // An edit that meets a bound near 1 hardly exists: equilateral triangles do not nest.
+            return fail("aspect_min", self.aspect_min, "from 0 to 0.5");
+        }
+        if !(0.0..1.0).contains(&self.hysteresis) {
+            return fail("hysteresis", self.hysteresis, "from 0 to below 1");
+        }
+        Ok(())
+    }
+}
