@@ -2,7 +2,7 @@
 //!
 //! E = ½ B l² θ²/(A + A′) with the rigidity B in the direction across the edge. It is cheap, but its
 //! effective rigidity depends on the mesh: B on equilateral triangles, 0.75 to 3 times that on other
-//! patterns (`reference/hinge_effective_rigidity`).
+//! patterns (see `docs/decisions.md`).
 
 use crate::dihedral;
 use crate::element::{ElementModel, ElementSystem, Stiffness};

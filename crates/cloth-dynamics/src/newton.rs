@@ -46,11 +46,11 @@ pub struct SolveReport {
     pub unconverged: usize,
     /// Largest velocity change of a last iteration (m/s).
     pub residual: f64,
-    /// Seconds spent on forces and matrix assembly.
+    /// Time spent on forces and matrix assembly (s).
     pub assembly_s: f64,
-    /// Seconds spent in the linear solver.
+    /// Time spent in the linear solver (s).
     pub linear_s: f64,
-    /// Seconds spent on energies in the line search.
+    /// Time spent on energies in the line search (s).
     pub energy_s: f64,
 }
 

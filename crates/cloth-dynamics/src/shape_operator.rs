@@ -6,7 +6,7 @@
 //!
 //! with the dihedral angle θ_e shared between the two triangles by their heights over the edge, and
 //! the unit normal n_e of the edge in material space. Energy is A ψ(Λ_T). On a hinge-only model the
-//! rigidity depends on the pattern of the mesh (`reference/hinge_effective_rigidity`); here a
+//! rigidity depends on the pattern of the mesh (see `docs/decisions.md`); here a
 //! constant moment is in equilibrium on every mesh, and the rigidity is exact on every lattice.
 //! At a free edge φ is whatever carries no moment across it: it is eliminated beforehand.
 

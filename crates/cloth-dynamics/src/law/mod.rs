@@ -19,9 +19,9 @@ use nalgebra::{Matrix3, Vector3};
 pub struct Response {
     /// Energy per material area (J/m²).
     pub energy: f64,
-    /// First derivative: the conjugate stress or moment.
+    /// First derivative: the conjugate stress (N/m) or moment (N).
     pub stress: Vector3<f64>,
-    /// Second derivative: the tangent.
+    /// Second derivative: the tangent (N/m; N m for bending).
     pub tangent: Matrix3<f64>,
 }
 

@@ -10,13 +10,13 @@ use nalgebra::{Matrix3, Vector3};
      definite: c11, c22, c33 and c11 c22 − c12² must be positive and finite"
 )]
 pub struct NotPositive {
-    /// Warp stiffness.
+    /// Warp stiffness (N/m; N m for bending).
     pub c11: f64,
-    /// Coupling.
+    /// Coupling (N/m; N m for bending).
     pub c12: f64,
-    /// Weft stiffness.
+    /// Weft stiffness (N/m; N m for bending).
     pub c22: f64,
-    /// Shear stiffness.
+    /// Shear stiffness (N/m; N m for bending).
     pub c33: f64,
 }
 
