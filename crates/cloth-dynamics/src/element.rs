@@ -50,6 +50,13 @@ pub trait ElementModel<const N: usize>: Send + Sync {
     /// Takes what the energy lags from the start of the stage.
     fn begin(&mut self, stage: Stage<'_>);
 
+    /// Takes what the projected stiffness lags from the linear prediction at `x + step` (m).
+    fn predict(&mut self, x: &[World3], step: &[World3]);
+
+    /// By how much the gradient (N) at `trial` exceeds the prediction, in the directions of `x`;
+    /// `None` for a model that is not stiff.
+    fn remainder(&self, e: usize, x: &[World3; N], trial: &[World3; N]) -> Option<[World3; N]>;
+
     /// Energy of element `e` (J) with its corners at `x` (m). Absent corners are at the origin.
     fn energy(&self, e: usize, x: &[World3; N]) -> f64;
 
@@ -110,6 +117,19 @@ impl<M: ElementModel<N>, const N: usize> Force for Elements<M, N> {
 
     fn begin(&mut self, stage: Stage<'_>) {
         self.model.begin(stage);
+    }
+
+    fn predict(&mut self, x: &[World3], step: &[World3]) {
+        self.model.predict(x, step);
+    }
+
+    fn add_remainder(&self, x: &[World3], trial: &[World3], gradient: &mut [World3]) {
+        for e in 0..self.model.stencils().len() {
+            let (x, trial) = (self.corners(e, x), self.corners(e, trial));
+            if let Some(remainder) = self.model.remainder(e, &x, &trial) {
+                self.scatter(e, &remainder, gradient);
+            }
+        }
     }
 
     fn energy(&self, x: &[World3]) -> f64 {

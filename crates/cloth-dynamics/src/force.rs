@@ -35,6 +35,14 @@ pub trait Force: Send + Sync {
     /// Called at the start of every implicit stage.
     fn begin(&mut self, stage: Stage<'_>);
 
+    /// Called with a Newton step before it is made: what the stiffness lags may be taken from the
+    /// linear prediction at `x + step`.
+    fn predict(&mut self, x: &[World3], step: &[World3]);
+
+    /// Adds the forces (N, as a gradient) by which the true stress at `trial` exceeds what
+    /// [`Force::predict`] expected there, in the directions they have at `x`.
+    fn add_remainder(&self, x: &[World3], trial: &[World3], gradient: &mut [World3]);
+
     /// Energy (J).
     fn energy(&self, x: &[World3]) -> f64;
 

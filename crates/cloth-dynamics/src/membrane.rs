@@ -3,7 +3,14 @@
 //!
 //! With F = Σ xᵢ bᵢᵀ and E = ½ (FᵀF − I) the energy is A ψ(E), the force on corner i is −A F S bᵢ,
 //! and the stiffness between corners i and j is A (ZᵢᵀD Zⱼ + (bᵢ·S bⱼ) I), where S = ∂ψ/∂E,
-//! D = ∂²ψ/∂E² and Zᵢ = ∂E/∂xᵢ. The projected stiffness clamps D and S to their positive parts.
+//! D = ∂²ψ/∂E² and Zᵢ = ∂E/∂xᵢ.
+//!
+//! The projected stiffness clamps D and S to their positive parts, and takes S not from the iterate
+//! but from the linear prediction E + Z Δx of the last Newton step (from the start of the stage in
+//! the first). When stiff cloth turns by θ in one iteration, the iterate is stretched by θ²/2 for the
+//! moment; S there is many times the true tension, resists any further turn, and Newton's method
+//! creeps. The predicted stress is what a solver with multipliers would use, and both agree at the
+//! solution.
 
 use crate::element::{ElementModel, ElementSystem, Stiffness};
 use crate::fabric::Fabric;
@@ -22,6 +29,8 @@ pub struct MembraneModel {
     fabrics: Arc<Vec<Fabric>>,
     /// Strain at the start of the step, kept only if some fabric is damped.
     strain_t0: Vec<Vector3<f64>>,
+    /// Stress (s₁₁, s₂₂, s₁₂) for the geometric part of the projected stiffness (N/m).
+    tension: Vec<Vector3<f64>>,
     damped: bool,
     h: f64,
 }
@@ -35,7 +44,9 @@ impl MembraneModel {
     ) -> Self {
         let damped = fabrics.iter().any(|f| f.damping.stiffness > 0.0);
         let strain_t0 = if damped { vec![Vector3::zeros(); rest.len()] } else { Vec::new() };
-        MembraneModel { stencils: triangles.to_vec(), rest, fabrics, strain_t0, damped, h: 1.0 }
+        let tension = vec![Vector3::zeros(); rest.len()];
+        let stencils = triangles.to_vec();
+        MembraneModel { stencils, rest, fabrics, strain_t0, tension, damped, h: 1.0 }
     }
 
     fn fabric(&self, e: usize) -> &Fabric {
@@ -98,6 +109,13 @@ impl ElementModel<3> for MembraneModel {
 
     fn begin(&mut self, stage: Stage<'_>) {
         self.h = stage.h;
+        let mut tension = std::mem::take(&mut self.tension);
+        par::fill(&mut tension, |e| {
+            let x = self.stencils[e].map(|i| stage.x_t0[i as usize]);
+            let f = self.rest[e].deformation_gradient(&x);
+            self.fabric(e).membrane.response(&RestTriangle::green_strain(&f)).stress
+        });
+        self.tension = tension;
         if self.damped {
             let (rest, stencils) = (&self.rest, &self.stencils);
             par::fill(&mut self.strain_t0, |e| {
@@ -105,6 +123,25 @@ impl ElementModel<3> for MembraneModel {
                 RestTriangle::green_strain(&rest[e].deformation_gradient(&x))
             });
         }
+    }
+
+    fn predict(&mut self, x: &[World3], step: &[World3]) {
+        let mut tension = std::mem::take(&mut self.tension);
+        par::fill(&mut tension, |e| {
+            let stencil = self.stencils[e];
+            let f = self.rest[e].deformation_gradient(&stencil.map(|i| x[i as usize]));
+            let df = self.rest[e].deformation_gradient(&stencil.map(|i| step[i as usize]));
+            let strain = RestTriangle::green_strain(&f) + RestTriangle::strain_change(&f, &df);
+            self.response(e, &strain).stress
+        });
+        self.tension = tension;
+    }
+
+    fn remainder(&self, e: usize, x: &[World3; 3], trial: &[World3; 3]) -> Option<[World3; 3]> {
+        let rest = &self.rest[e];
+        let strain = RestTriangle::green_strain(&rest.deformation_gradient(trial));
+        let excess = self.response(e, &strain).stress - self.tension[e];
+        Some(spread(rest, &(rest.deformation_gradient(x) * tensor(&excess))))
     }
 
     fn energy(&self, e: usize, x: &[World3; 3]) -> f64 {
@@ -128,15 +165,16 @@ impl ElementModel<3> for MembraneModel {
     fn system(&self, e: usize, x: &[World3; 3], kind: Stiffness, out: &mut ElementSystem<3>) {
         let rest = &self.rest[e];
         let f = rest.deformation_gradient(x);
-        let Response { stress, tangent, .. } =
-            self.response(e, &RestTriangle::green_strain(&f));
+        let Response { stress, tangent, .. } = self.response(e, &RestTriangle::green_strain(&f));
         let stress = tensor(&stress);
         out.active = true;
         out.gradient = spread(rest, &(f * stress));
 
         let (s, d) = match kind {
             Stiffness::Exact => (stress, tangent),
-            Stiffness::Projected => (positive_part(&stress), self.projected(e, &tangent)),
+            Stiffness::Projected => {
+                (positive_part(&tensor(&self.tension[e])), self.projected(e, &tangent))
+            }
         };
         // Only corners 1 and 2 need work: each row of blocks sums to zero.
         let (f1, f2) = (f.column(0), f.column(1));

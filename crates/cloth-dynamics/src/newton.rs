@@ -40,6 +40,8 @@ pub struct SolveReport {
     pub analyses: usize,
     /// Halvings of a step in the line search.
     pub halvings: usize,
+    /// Second-order corrections in the line search.
+    pub corrections: usize,
     /// Solved stages.
     pub stages: usize,
     /// Stages that stopped before they reached the tolerance.
@@ -62,6 +64,7 @@ impl SolveReport {
         self.factorisations += other.factorisations;
         self.analyses += other.analyses;
         self.halvings += other.halvings;
+        self.corrections += other.corrections;
         self.stages += other.stages;
         self.unconverged += other.unconverged;
         self.residual = self.residual.max(other.residual);
@@ -117,8 +120,7 @@ pub(crate) struct Inertia<'a> {
 
 impl Inertia<'_> {
     fn potential(&self, system: &System, x: &[World3]) -> f64 {
-        let kinetic =
-            par::sum(x.len(), |i| self.mass[i] * (x[i] - self.target[i]).norm_squared());
+        let kinetic = par::sum(x.len(), |i| self.mass[i] * (x[i] - self.target[i]).norm_squared());
         kinetic / (2.0 * self.h * self.h) + system.energy(x)
     }
 }
@@ -127,6 +129,10 @@ impl Inertia<'_> {
 const SUFFICIENT: f64 = 1e-4;
 /// The most halvings before a direction is given up.
 const MAX_HALVINGS: usize = 30;
+/// The most second-order corrections of one trial.
+const MAX_CORRECTIONS: usize = 3;
+/// Shorter steps are not corrected: they hardly turn anything.
+const LEAST_CORRECTED: f64 = 0.25;
 
 /// Minimises the incremental potential from the better of the given starts.
 pub(crate) fn minimise(
@@ -140,7 +146,8 @@ pub(crate) fn minimise(
     let mut report = SolveReport { stages: 1, ..Default::default() };
     let clock = Instant::now();
     let valued = starts.iter().map(|x| (inertia.potential(system, x), x));
-    let best = valued.filter(|(phi, _)| phi.is_finite()).reduce(|a, b| if b.0 < a.0 { b } else { a });
+    let best =
+        valued.filter(|(phi, _)| phi.is_finite()).reduce(|a, b| if b.0 < a.0 { b } else { a });
     let (mut phi, mut x) = match best {
         Some((phi, x)) => (phi, x.clone()),
         None => return Err(SolveError::NotFinite { time, h }),
@@ -172,6 +179,7 @@ pub(crate) fn minimise(
         report.iterations += 1;
 
         let clock = Instant::now();
+        system.predict(&x, &direction);
         let slope = -par::sum(n, |i| rhs[i].dot(&direction[i]));
         let largest = direction.iter().map(|d| d.norm_squared()).fold(0.0, f64::max).sqrt();
         report.residual = largest / h;
@@ -179,29 +187,72 @@ pub(crate) fn minimise(
         // Below this a change of Φ is rounding.
         let noise = 1e-13 * phi.abs();
         let mut share = 1.0;
-        let mut accepted = false;
+        let mut accepted = None;
         for _ in 0..=MAX_HALVINGS {
+            let bound = phi + SUFFICIENT * share * slope + noise;
             par::fill(&mut trial, |i| x[i] + direction[i] * share);
-            let value = inertia.potential(system, &trial);
-            if value <= phi + SUFFICIENT * share * slope + noise {
-                std::mem::swap(&mut x, &mut trial);
-                phi = value;
-                accepted = true;
+            let mut value = inertia.potential(system, &trial);
+            let mut corrections = 0;
+            while !(value <= bound) && share >= LEAST_CORRECTED && corrections < MAX_CORRECTIONS {
+                let before = value;
+                value = correct(system, solver, inertia, &x, &mut trial)
+                    .map_err(|source| SolveError::Linear { time, source })?;
+                corrections += 1;
+                // Give up on a correction that does not at least halve the excess.
+                if !(value - bound <= 0.5 * (before - bound)) {
+                    break;
+                }
+            }
+            report.corrections += corrections;
+            if value <= bound {
+                accepted = Some(value);
                 break;
             }
             share *= 0.5;
             report.halvings += 1;
         }
         report.energy_s += clock.elapsed().as_secs_f64();
-        if !accepted {
+        let Some(value) = accepted else {
             // No descent left within rounding: report it instead of going in circles.
             converged = false;
             break;
-        }
+        };
+        std::mem::swap(&mut x, &mut trial);
+        phi = value;
         converged &= share == 1.0;
     }
     report.unconverged = usize::from(!converged);
     Ok((x, report))
+}
+
+/// Second-order correction of a trial (Nocedal2006 §15.6): takes the stress away that is there only
+/// because the step was straight; returns the new potential.
+///
+/// A Newton step that turns stiff cloth by an angle θ stretches it by θ²/2, and on the curved valley
+/// of stiff energies a line search alone would then creep (the Maratos effect). The factor is there
+/// already, and the stretch is what it knows best. The excess stress acts in the directions it has at
+/// `x`: those of the trial are turned, and their error would push along the soft valley.
+fn correct(
+    system: &System,
+    solver: &mut dyn LinearSolver,
+    inertia: &Inertia<'_>,
+    x: &[World3],
+    trial: &mut [World3],
+) -> Result<f64, LinearError> {
+    let mut rhs = system.remainder(x, trial);
+    for g in &mut rhs {
+        *g = -*g;
+    }
+    clear_fixed(&mut rhs, inertia.fixed);
+    if !rhs.iter().all(|g| g.iter().all(|c| c.is_finite())) {
+        return Ok(f64::NAN);
+    }
+    let mut step = vec![World3::zeros(); trial.len()];
+    solver.solve_again(&system.matrix, &rhs, &mut step)?;
+    for (x, d) in trial.iter_mut().zip(&step) {
+        *x += d;
+    }
+    Ok(inertia.potential(system, trial))
 }
 
 /// Sets the matrix to the projected Hessian of Φ with fixed vertices taken out; returns ∇Φ.

@@ -32,6 +32,10 @@ impl Force for Gravity {
 
     fn begin(&mut self, _: Stage<'_>) {}
 
+    fn predict(&mut self, _: &[World3], _: &[World3]) {}
+
+    fn add_remainder(&self, _: &[World3], _: &[World3], _: &mut [World3]) {}
+
     fn energy(&self, x: &[World3]) -> f64 {
         -par::sum(x.len(), |i| self.masses[i] * self.acceleration.dot(&x[i]))
     }
@@ -81,9 +85,12 @@ impl Force for MassDamping {
         self.h = stage.h;
     }
 
+    fn predict(&mut self, _: &[World3], _: &[World3]) {}
+
+    fn add_remainder(&self, _: &[World3], _: &[World3], _: &mut [World3]) {}
+
     fn energy(&self, x: &[World3]) -> f64 {
-        par::sum(x.len(), |i| self.rates[i] * (x[i] - self.base[i]).norm_squared())
-            / (2.0 * self.h)
+        par::sum(x.len(), |i| self.rates[i] * (x[i] - self.base[i]).norm_squared()) / (2.0 * self.h)
     }
 
     fn add_gradient(&self, x: &[World3], gradient: &mut [World3]) {
@@ -119,6 +126,10 @@ impl Force for Springs {
     fn bind(&mut self, _: &BlockPattern) {}
 
     fn begin(&mut self, _: Stage<'_>) {}
+
+    fn predict(&mut self, _: &[World3], _: &[World3]) {}
+
+    fn add_remainder(&self, _: &[World3], _: &[World3], _: &mut [World3]) {}
 
     fn energy(&self, x: &[World3]) -> f64 {
         self.springs.iter().map(|&(i, p, k)| 0.5 * k * (x[i as usize] - p).norm_squared()).sum()

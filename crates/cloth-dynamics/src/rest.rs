@@ -40,14 +40,18 @@ impl RestTriangle {
         ])
     }
 
+    /// Change of [`RestTriangle::green_strain`] to first order when F changes by `df`.
+    #[inline]
+    pub fn strain_change(f: &Matrix3x2<f64>, df: &Matrix3x2<f64>) -> Vector3<f64> {
+        let (f1, f2) = (f.column(0), f.column(1));
+        let (d1, d2) = (df.column(0), df.column(1));
+        Vector3::new(f1.dot(&d1), f2.dot(&d2), f1.dot(&d2) + f2.dot(&d1))
+    }
+
     /// Green strain (E₁₁, E₂₂, 2 E₁₂) of a deformation gradient.
     #[inline]
     pub fn green_strain(f: &Matrix3x2<f64>) -> Vector3<f64> {
         let (f1, f2) = (f.column(0), f.column(1));
-        Vector3::new(
-            0.5 * (f1.norm_squared() - 1.0),
-            0.5 * (f2.norm_squared() - 1.0),
-            f1.dot(&f2),
-        )
+        Vector3::new(0.5 * (f1.norm_squared() - 1.0), 0.5 * (f2.norm_squared() - 1.0), f1.dot(&f2))
     }
 }

@@ -185,13 +185,18 @@ impl ElementModel<6> for ShapeOperatorModel {
         if self.damped {
             let mut curvature = std::mem::take(&mut self.curvature_t0);
             par::fill(&mut curvature, |e| {
-                let x = self.stencils[e].map(|i| {
-                    if i == ABSENT { World3::zeros() } else { stage.x_t0[i as usize] }
-                });
+                let x = self.stencils[e]
+                    .map(|i| if i == ABSENT { World3::zeros() } else { stage.x_t0[i as usize] });
                 self.curvature(e, &x)
             });
             self.curvature_t0 = curvature;
         }
+    }
+
+    fn predict(&mut self, _: &[World3], _: &[World3]) {}
+
+    fn remainder(&self, _: usize, _: &[World3; 6], _: &[World3; 6]) -> Option<[World3; 6]> {
+        None
     }
 
     fn energy(&self, e: usize, x: &[World3; 6]) -> f64 {

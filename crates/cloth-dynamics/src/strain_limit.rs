@@ -11,7 +11,7 @@ use crate::element::{ElementModel, ElementSystem, Stiffness};
 use crate::fabric::{Fabric, StrainLimits};
 use crate::force::Stage;
 use crate::rest::RestTriangle;
-use mesh_core::World3;
+use mesh_core::{World3, par};
 use nalgebra::{Matrix2, Matrix3, Matrix3x2};
 use std::sync::Arc;
 
@@ -27,10 +27,9 @@ const RISE: f64 = 0.25;
 fn penalty(limits: &StrainLimits, sigma: f64) -> [f64; 3] {
     let mut total = [0.0; 3];
     // Distance to the bound, the sign of an outward stretch, and the bound's distance from rest.
-    for (gap, sign, reach) in [
-        (limits.max - sigma, 1.0, limits.max - 1.0),
-        (sigma - limits.min, -1.0, 1.0 - limits.min),
-    ] {
+    for (gap, sign, reach) in
+        [(limits.max - sigma, 1.0, limits.max - 1.0), (sigma - limits.min, -1.0, 1.0 - limits.min)]
+    {
         let delta = BAND * reach;
         let t = 1.0 - gap / delta;
         if t > 0.0 {
@@ -80,6 +79,9 @@ pub struct StrainLimitModel {
     triangles: Vec<u32>,
     rest: Arc<Vec<RestTriangle>>,
     fabrics: Arc<Vec<Fabric>>,
+    /// Predicted principal stretches for the geometric part of the projected stiffness (1); see
+    /// [`MembraneModel`](crate::MembraneModel).
+    predicted: Vec<[f64; 2]>,
 }
 
 impl StrainLimitModel {
@@ -95,6 +97,7 @@ impl StrainLimitModel {
         let stencils = limited.iter().map(|&t| triangles[t as usize]).collect();
         (!limited.is_empty()).then_some(StrainLimitModel {
             stencils,
+            predicted: vec![[1.0; 2]; limited.len()],
             triangles: limited,
             rest,
             fabrics,
@@ -127,7 +130,47 @@ impl ElementModel<3> for StrainLimitModel {
         &self.stencils
     }
 
-    fn begin(&mut self, _: Stage<'_>) {}
+    fn begin(&mut self, stage: Stage<'_>) {
+        let mut predicted = std::mem::take(&mut self.predicted);
+        par::fill(&mut predicted, |e| {
+            let x = self.stencils[e].map(|i| stage.x_t0[i as usize]);
+            principal_stretches(&self.element(e).0.deformation_gradient(&x)).0
+        });
+        self.predicted = predicted;
+    }
+
+    fn predict(&mut self, x: &[World3], step: &[World3]) {
+        let mut predicted = std::mem::take(&mut self.predicted);
+        par::fill(&mut predicted, |e| {
+            let (rest, _) = self.element(e);
+            let f = rest.deformation_gradient(&self.stencils[e].map(|i| x[i as usize]));
+            let df = rest.deformation_gradient(&self.stencils[e].map(|i| step[i as usize]));
+            let (sigma, v) = principal_stretches(&f);
+            let (fv, dfv) = (f * v, df * v);
+            // dσ = uᵀ dF v with u = F v/σ.
+            [0, 1].map(|k| {
+                let s = sigma[k].max(1e-9);
+                (sigma[k] + fv.column(k).dot(&dfv.column(k)) / s).max(0.0)
+            })
+        });
+        self.predicted = predicted;
+    }
+
+    fn remainder(&self, e: usize, x: &[World3; 3], trial: &[World3; 3]) -> Option<[World3; 3]> {
+        let (rest, limits) = self.element(e);
+        let (sigma, _) = principal_stretches(&rest.deformation_gradient(trial));
+        let excess =
+            [0, 1].map(|k| penalty(limits, sigma[k])[1] - penalty(limits, self.predicted[e][k])[1]);
+        if excess == [0.0; 2] {
+            return None;
+        }
+        let f = rest.deformation_gradient(x);
+        let (stretches, v) = principal_stretches(&f);
+        let [u1, u2, _] = orthonormal(&(f * v), stretches);
+        let piola =
+            u1 * v.column(0).transpose() * excess[0] + u2 * v.column(1).transpose() * excess[1];
+        Some(rest.b.map(|b| piola * b * rest.area))
+    }
 
     fn energy(&self, e: usize, x: &[World3; 3]) -> f64 {
         let (rest, limits) = self.element(e);
@@ -161,18 +204,24 @@ impl ElementModel<3> for StrainLimitModel {
         let [u1, u2, n] = frame;
         let (v1, v2) = (v.column(0).into_owned(), v.column(1).into_owned());
 
+        // The loads of the geometric part: here, or where the last step was predicted to lead.
+        let geometric = match kind {
+            Stiffness::Exact => sigma,
+            Stiffness::Projected => self.predicted[e],
+        };
+        let [g1, g2] = geometric.map(|s| penalty(limits, s));
         // A floor keeps the quotients finite on collapsed triangles.
-        let [s1, s2] = sigma.map(|s| s.max(1e-9));
+        let [s1, s2] = geometric.map(|s| s.max(1e-9));
         let apart = s1 - s2;
-        let flip = if apart > 1e-7 { (p1[1] - p2[1]) / apart } else { 0.5 * (p1[2] + p2[2]) };
+        let flip = if apart.abs() > 1e-7 { (g1[1] - g2[1]) / apart } else { 0.5 * (g1[2] + g2[2]) };
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let modes = [
             (p1[2], u1 * v1.transpose()),
             (p2[2], u2 * v2.transpose()),
-            ((p1[1] + p2[1]) / (s1 + s2), (u1 * v2.transpose() - u2 * v1.transpose()) * half),
+            ((g1[1] + g2[1]) / (s1 + s2), (u1 * v2.transpose() - u2 * v1.transpose()) * half),
             (flip, (u1 * v2.transpose() + u2 * v1.transpose()) * half),
-            (p1[1] / s1, n * v1.transpose()),
-            (p2[1] / s2, n * v2.transpose()),
+            (g1[1] / s1, n * v1.transpose()),
+            (g2[1] / s2, n * v2.transpose()),
         ];
         let piola = (u1 * v1.transpose()) * p1[1] + (u2 * v2.transpose()) * p2[1];
         out.gradient = rest.b.map(|b| piola * b * rest.area);

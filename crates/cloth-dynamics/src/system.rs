@@ -124,6 +124,22 @@ impl System {
         }
     }
 
+    /// Tells the forces the step that is about to be tried.
+    pub(crate) fn predict(&mut self, x: &[World3], step: &[World3]) {
+        for force in &mut self.forces {
+            force.predict(x, step);
+        }
+    }
+
+    /// Forces beyond the prediction at `trial`, in the directions of `x` (N, as a gradient).
+    pub(crate) fn remainder(&self, x: &[World3], trial: &[World3]) -> Vec<World3> {
+        let mut gradient = vec![World3::zeros(); x.len()];
+        for force in &self.forces {
+            force.add_remainder(x, trial, &mut gradient);
+        }
+        gradient
+    }
+
     /// Sets the matrix to the projected stiffness and adds the gradient.
     pub(crate) fn assemble(&mut self, x: &[World3], gradient: &mut [World3]) {
         self.matrix.set_zero();

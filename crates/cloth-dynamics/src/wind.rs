@@ -88,10 +88,16 @@ impl ElementModel<3> for WindModel {
         });
     }
 
+    fn predict(&mut self, _: &[World3], _: &[World3]) {}
+
+    fn remainder(&self, _: usize, _: &[World3; 3], _: &[World3; 3]) -> Option<[World3; 3]> {
+        None
+    }
+
     fn energy(&self, e: usize, x: &[World3; 3]) -> f64 {
         let (n, t) = self.relative(e, x);
-        let rate = self.wind.density * n.abs().powi(3) / 3.0
-            + 0.5 * self.wind.drag * t.norm_squared();
+        let rate =
+            self.wind.density * n.abs().powi(3) / 3.0 + 0.5 * self.wind.drag * t.norm_squared();
         self.h * self.sails[e].area * rate
     }
 

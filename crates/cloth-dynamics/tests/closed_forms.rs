@@ -2,11 +2,13 @@
 
 mod common;
 
-use cloth_dynamics::{BendingModel, Constraints, ElementModel, Fabric, HingeModel, MembraneModel, RestTriangle};
-use common::{G, Run, fabric, gravity, hold, sheet};
 use cloth_dynamics::law::{Membrane, Quadratic};
-use mesh_core::generate::Diagonal;
+use cloth_dynamics::{
+    BendingModel, Constraints, ElementModel, Fabric, HingeModel, MembraneModel, RestTriangle,
+};
+use common::{G, Run, fabric, gravity, hold, sheet};
 use mesh_core::World3;
+use mesh_core::generate::Diagonal;
 use nalgebra::Vector2;
 use std::sync::Arc;
 
@@ -35,7 +37,8 @@ fn cantilever(gamma: f64, n: usize, diagonal: Diagonal) -> (f64, f64) {
     let mut run = Run::new(cloth, fabric(stretch, rigidity * gamma_scale, density), &gravity());
     run.rest(&held, 0.05);
     let end = run.cloth.x.iter().zip(run.cloth.mesh.vertices());
-    let tip: Vec<World3> = end.filter(|(_, v)| v.index() % (n + 2) == n + 1).map(|(x, _)| *x).collect();
+    let tip: Vec<World3> =
+        end.filter(|(_, v)| v.index() % (n + 2) == n + 1).map(|(x, _)| *x).collect();
     let tip: World3 = tip.iter().sum::<World3>() / tip.len() as f64;
     (-tip.z / free, (tip.x - 0.5 * cell) / free)
 }
@@ -47,7 +50,9 @@ fn cantilever_follows_the_master_curve() {
         let n = ((2.0 * gamma.sqrt()).ceil() as usize).max(10);
         for diagonal in [Diagonal::One, Diagonal::Alternating] {
             let (h, w) = cantilever(gamma, n, diagonal);
-            println!("Γ {gamma}: n {n} {diagonal:?}: H/L {h:.5} ({drop:.5}), W/L {w:.5} ({reach:.5})");
+            println!(
+                "Γ {gamma}: n {n} {diagonal:?}: H/L {h:.5} ({drop:.5}), W/L {w:.5} ({reach:.5})"
+            );
             assert!((h - drop).abs() < 0.01, "Γ {gamma}: H/L {h}, exact {drop}");
             assert!((w - reach).abs() < 0.01, "Γ {gamma}: W/L {w}, exact {reach}");
         }

@@ -32,7 +32,8 @@ struct Noise(u64);
 
 impl Noise {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
     fn vector(&mut self, scale: f64) -> World3 {
@@ -170,7 +171,11 @@ fn check<const N: usize>(model: &mut impl ElementModel<N>, cloth: &ClothState, k
 fn dense<const N: usize>(system: &ElementSystem<N>) -> DMatrix<f64> {
     DMatrix::from_fn(3 * N, 3 * N, |r, c| {
         let (i, j) = (r / 3, c / 3);
-        if i >= j { system.stiffness[i][j][(r % 3, c % 3)] } else { system.stiffness[j][i][(c % 3, r % 3)] }
+        if i >= j {
+            system.stiffness[i][j][(r % 3, c % 3)]
+        } else {
+            system.stiffness[j][i][(c % 3, r % 3)]
+        }
     })
 }
 
@@ -188,8 +193,8 @@ fn projected_is_positive<const N: usize>(model: &impl ElementModel<N>, e: usize,
 
 /// Where the exact Hessian is positive the projected one must be the same.
 fn exact_where_flat<const N: usize>(model: &mut impl ElementModel<N>, cloth: &ClothState) {
-    model.begin(Stage { x_t0: &cloth.x, base: &cloth.x, h: 0.005, time: 0.0 });
     let x: Vec<World3> = cloth.x.iter().map(|x| x * 1.001).collect();
+    model.begin(Stage { x_t0: &x, base: &cloth.x, h: 0.005, time: 0.0 });
     for e in 0..model.stencils().len() {
         let corners = gather(&model.stencils()[e], &x);
         let [mut exact, mut projected] = [ElementSystem::<N>::zero(), ElementSystem::<N>::zero()];

@@ -2,9 +2,7 @@
 
 mod common;
 
-use cloth_dynamics::{
-    Constraints, Environment, ImplicitEuler, Sdirk2, TimeIntegrator, Wind,
-};
+use cloth_dynamics::{Constraints, Environment, ImplicitEuler, Sdirk2, TimeIntegrator, Wind};
 use common::{G, NOTHING, Run, fabric, gravity, sheet};
 use mesh_core::generate::Diagonal;
 use mesh_core::{ClothState, World3};
@@ -60,7 +58,9 @@ fn oscillate(integrator: &mut dyn TimeIntegrator, omega: f64, h: f64, n: usize) 
 /// Amplitude per step of implicit Euler is 1/√(1 + (ωh)²) (reference/oscillator_integrators).
 #[test]
 fn implicit_euler_damps_by_its_law() {
-    for (omega_h, amplitude) in [(0.1, 0.99503719021), (1.0, 0.707106781187), (10.0, 0.099503719021)] {
+    for (omega_h, amplitude) in
+        [(0.1, 0.99503719021), (1.0, 0.707106781187), (10.0, 0.099503719021)]
+    {
         let h = 0.01;
         let (x, v) = oscillate(&mut ImplicitEuler, omega_h / h, h, 3);
         let found = x.hypot(v);
@@ -139,8 +139,9 @@ fn implicit_euler_slows_a_spin_by_its_law() {
     for (phi, ratio) in [(0.01, 0.999900015831), (0.1, 0.99015562982), (0.5, 0.819322723984)] {
         let h = 0.01;
         let mut run = Run::new(small(0.2), fabric(1e9, 0.0, 0.2), &NOTHING);
-        let centre: World3 = run.cloth.x.iter().zip(&run.cloth.m).map(|(x, m)| x * *m).sum::<World3>()
-            / run.cloth.total_mass();
+        let centre: World3 =
+            run.cloth.x.iter().zip(&run.cloth.m).map(|(x, m)| x * *m).sum::<World3>()
+                / run.cloth.total_mass();
         for x in &mut run.cloth.x {
             *x -= centre;
         }
@@ -173,7 +174,8 @@ fn energy_does_not_rise() {
                 )
                 .unwrap();
                 run.settings.tolerance = 1e-6;
-                let energy = |run: &Run| run.cloth.kinetic_energy() + run.system.energy(&run.cloth.x);
+                let energy =
+                    |run: &Run| run.cloth.kinetic_energy() + run.system.energy(&run.cloth.x);
                 let start = energy(&run);
                 for _ in 0..60 {
                     run.step(integrator, h, &free);

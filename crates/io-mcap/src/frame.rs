@@ -47,7 +47,7 @@ pub struct Camera {
     pub center_px: [f64; 2],
     /// Where the camera stands in the world (m).
     pub position: [f64; 3],
-    /// `world_from_camera` as a unit quaternion x, y, z, w.
+    /// `world_from_camera` as a unit quaternion x, y, z, w (1).
     pub rotation: [f64; 4],
 }
 
@@ -58,7 +58,7 @@ pub struct Transform<'a> {
     pub name: &'a str,
     /// Translation (m).
     pub translation: [f64; 3],
-    /// Rotation into the world as a unit quaternion x, y, z, w.
+    /// Rotation into the world as a unit quaternion x, y, z, w (1).
     pub rotation: [f64; 4],
 }
 
@@ -101,7 +101,7 @@ pub struct OwnedTransform {
     pub name: String,
     /// See [`Transform::translation`] (m).
     pub translation: [f64; 3],
-    /// See [`Transform::rotation`].
+    /// See [`Transform::rotation`] (1).
     pub rotation: [f64; 4],
 }
 

@@ -21,20 +21,23 @@ impl Recorder<RecordingFile> {
     /// before the end of that frame is damaged, or the copy cannot be written.
     pub fn resume(path: impl AsRef<Path>, up_to_frame: u64) -> Result<Self, Error> {
         let path = path.as_ref();
-        let mut partial = path.as_os_str().to_owned();
+        let mut recording = Recording::open(path)?;
+        // A link stays a link: what it leads to is replaced.
+        let target = path.canonicalize().map_err(Error::io("find the recording"));
+        let target = target.map_err(Error::in_file(path))?;
+        let mut partial = target.as_os_str().to_owned();
         partial.push(".partial");
         let partial = PathBuf::from(partial);
-        let mut recording = Recording::open(path)?;
         let mut copy = || {
             recording.entry(up_to_frame)?;
             let file = File::create(&partial).map_err(Error::io("create the copy"))?;
             // A second handle, as the recorder keeps the first.
             let handle = file.try_clone().map_err(Error::io("create the copy"))?;
-            let target = RecordingFile::opened(file, path);
-            let recorder = copy(&mut recording, target, up_to_frame)?;
+            let file = RecordingFile::opened(file, path);
+            let recorder = copy(&mut recording, file, up_to_frame)?;
             // On the disk before it takes the place of what is known to be there.
             handle.sync_all().map_err(Error::io("write the copy to the disk"))?;
-            std::fs::rename(&partial, path).map_err(Error::io("put the copy in place"))?;
+            std::fs::rename(&partial, &target).map_err(Error::io("put the copy in place"))?;
             Ok(recorder)
         };
         copy().map_err(|error| {
@@ -47,7 +50,7 @@ impl Recorder<RecordingFile> {
 
 fn copy(
     recording: &mut Recording<File>,
-    target: RecordingFile,
+    file: RecordingFile,
     up_to_frame: u64,
 ) -> Result<Recorder<RecordingFile>, Error> {
     let scan = recording.scan();
@@ -64,7 +67,7 @@ fn copy(
         return Err(Error::damaged(0, missing));
     }
     let Header { software, metadata, attachments } = recording.header()?;
-    let mut stream = Stream::open(target, &software, &metadata, attachments.len())?;
+    let mut stream = Stream::open(file, &software, &metadata, attachments.len())?;
     for Attachment { name, media_type, data } in &attachments {
         stream.attach(name, media_type, data)?;
     }

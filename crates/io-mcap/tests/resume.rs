@@ -107,6 +107,19 @@ fn what_cannot_be_continued_stays_as_it_was() {
 }
 
 #[test]
+#[cfg(unix)]
+fn a_link_stays_a_link() {
+    let (whole, _) = recording_of(3);
+    let (path, link) = (path("linked.mcap"), path("link.mcap"));
+    fs::write(&path, &whole).unwrap();
+    std::os::unix::fs::symlink(&path, &link).unwrap();
+    let mut recorder = Recorder::resume(&link, 0).unwrap();
+    (1..3).for_each(|index| record(&mut recorder, index));
+    recorder.finish().unwrap();
+    assert!(link.is_symlink() && fs::read(&path).unwrap() == whole);
+}
+
+#[test]
 fn a_copy_left_behind_is_in_nobodys_way() {
     let (whole, _) = recording_of(3);
     let path = path("leftover.mcap");

@@ -35,16 +35,19 @@ impl Mesh {
     }
 
     /// The index buffer: vertex indices of every triangle, counter-clockwise in material space.
+    #[inline]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.tri
     }
 
     /// Material coordinates of every triangle's corners (m).
+    #[inline]
     pub fn material(&self) -> &[[Material2; 3]] {
         &self.material
     }
 
     /// The panel of every triangle: an index into the caller's list of fabrics and settings.
+    #[inline]
     pub fn panels(&self) -> &[u32] {
         &self.panel
     }
@@ -151,6 +154,7 @@ impl Mesh {
 
     /// True where the two sides of an edge have different material coordinates: panels are sewn
     /// together here.
+    #[inline]
     pub fn is_seam(&self, h: HalfEdge) -> bool {
         self.twin(h).is_some_and(|g| {
             self.corner_material(h) != self.corner_material(g.next())
@@ -159,6 +163,7 @@ impl Mesh {
     }
 
     /// True where remeshing must keep the edge's line: boundary, seam, or change of panel.
+    #[inline]
     pub fn is_feature(&self, h: HalfEdge) -> bool {
         match self.twin(h) {
             None => true,
@@ -171,6 +176,7 @@ impl Mesh {
 
     /// The outgoing half-edges of a vertex, counter-clockwise; on the boundary from one boundary
     /// edge to the last triangle.
+    #[inline]
     pub fn outgoing(&self, v: VertexId) -> impl Iterator<Item = HalfEdge> + '_ {
         let first = HalfEdge(self.out[v.index()]);
         let mut at = Some(first);
@@ -182,6 +188,7 @@ impl Mesh {
     }
 
     /// The neighbours of a vertex, counter-clockwise.
+    #[inline]
     pub fn neighbours(&self, v: VertexId) -> impl Iterator<Item = VertexId> + '_ {
         let last =
             self.outgoing(v).last().map(HalfEdge::prev).filter(|&h| self.is_boundary_edge(h));
@@ -189,11 +196,13 @@ impl Mesh {
     }
 
     /// The half-edge from `a` to `b` if their edge has one in that direction.
+    #[inline]
     pub fn find(&self, a: VertexId, b: VertexId) -> Option<HalfEdge> {
         self.outgoing(a).find(|&h| self.dest(h) == b)
     }
 
     /// True if the two vertices share an edge.
+    #[inline]
     pub fn adjacent(&self, a: VertexId, b: VertexId) -> bool {
         self.neighbours(a).any(|n| n == b)
     }

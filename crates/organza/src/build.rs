@@ -155,9 +155,7 @@ fn piece(cloth: &scene::Cloth, loaded: &Loaded) -> Result<Piece, BuildError> {
             };
             generated(generate::grid(grid.size_m, grid.cells.map(|n| n as usize), diagonal))
         }
-        MeshSource::Disc(disc) => {
-            generated(generate::disc(disc.radius_m, disc.rings as usize))
-        }
+        MeshSource::Disc(disc) => generated(generate::disc(disc.radius_m, disc.rings as usize)),
         MeshSource::Tube(tube) => {
             let [around, along] = tube.segments.map(|n| n as usize);
             generated(generate::tube(tube.radius_m, tube.length_m, around, along))
@@ -220,10 +218,7 @@ fn fabric(cloth: &scene::Cloth, warnings: &mut Vec<String>) -> Result<Fabric, Bu
             crate::scene::format::BendingModel::Hinge => BendingModel::Hinge,
         },
         strain_limits: cloth.strain_limits.map(|[min, max]| StrainLimits { min, max }),
-        damping: Damping {
-            mass: cloth.damping.mass_per_s,
-            stiffness: cloth.damping.stiffness_s,
-        },
+        damping: Damping { mass: cloth.damping.mass_per_s, stiffness: cloth.damping.stiffness_s },
     })
 }
 

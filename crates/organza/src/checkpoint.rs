@@ -79,8 +79,7 @@ pub fn restore(world: &mut World, checkpoint: &Checkpoint) -> Result<(), Restore
     };
 
     let triangles = u32s("triangles", "triangles")?;
-    let triangles: Vec<[u32; 3]> =
-        triangles.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
+    let triangles: Vec<[u32; 3]> = triangles.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
     let material = f64s("material", "material")?;
     let material: Vec<[Material2; 3]> = material
         .chunks_exact(6)

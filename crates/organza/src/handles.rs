@@ -175,8 +175,7 @@ fn select(
                 Some(map) => map.get(k as usize).copied().flatten(),
                 None => ((k as usize) < n).then_some(VertexId(k)),
             };
-            let missing =
-                |k: &u32| format!("there is no vertex {k} in a cloth of {n} vertices");
+            let missing = |k: &u32| format!("there is no vertex {k} in a cloth of {n} vertices");
             numbers.iter().map(|k| one(k).ok_or_else(|| missing(k))).collect()
         }
         Select::Corners(corners) => Ok(corners
@@ -203,9 +202,7 @@ fn select(
             })
             .collect()),
         Select::Box(area) => Ok(inside(area.min.into(), area.max.into())),
-        Select::Boundary => {
-            Ok(mesh.vertices().filter(|&v| mesh.is_boundary_vertex(v)).collect())
-        }
+        Select::Boundary => Ok(mesh.vertices().filter(|&v| mesh.is_boundary_vertex(v)).collect()),
         Select::All => Ok(mesh.vertices().collect()),
     }
 }

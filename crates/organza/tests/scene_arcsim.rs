@@ -117,8 +117,12 @@ fn with(scene: &str, cloth: &str, material: &str) -> String {
 #[track_caller]
 fn complains(text: &str, sets: &[&str], expected: &[&str]) {
     let errors = read(text, sets, false).map(|loaded| loaded.scene).unwrap_err();
-    let got: Vec<String> =
-        errors.issues().iter().filter(|i| i.kind != IssueKind::Notice).map(|i| i.to_string()).collect();
+    let got: Vec<String> = errors
+        .issues()
+        .iter()
+        .filter(|i| i.kind != IssueKind::Notice)
+        .map(|i| i.to_string())
+        .collect();
     assert_eq!(got, expected, "\nscene: {text}");
 }
 
@@ -197,18 +201,20 @@ fn what_is_not_simulated_is_listed_with_its_place() {
         r#", "yield_curv": 200, "weakening": 0}, {"data": "m.json", "toughness": 1"#,
     );
     let expected = [
-        (1, 37, "obstacles", "obstacles"),
-        (1, 62, "morphs", "morphs"),
-        (1, 78, "motions", "motion files"),
+        (1, 36, "obstacles", "obstacles"),
+        (1, 61, "morphs", "morphs"),
+        (1, 77, "motions", "motion files"),
         (2, 14, "handles[0].type", "glue handles"),
         (2, 49, "handles[1].label", "handles by label"),
-        (2, 76, "handles[2].fade_time", "handles that fade"),
+        (2, 77, "handles[2].fade_time", "handles that fade"),
         (3, 11, "magic.preserve_creases", "creases kept by remeshing"),
         (3, 37, "magic.rib_stiffening", "rib stiffening"),
         (5, 19, "cloths[0].materials[0].yield_curv", "plasticity"),
         (5, 55, "cloths[0].materials[1]", "several materials on one cloth"),
     ]
-    .map(|(line, column, path, what)| format!("c/s.json:{line}:{column}: {path}: not supported yet: {what}"));
+    .map(|(line, column, path, what)| {
+        format!("c/s.json:{line}:{column}: {path}: not supported yet: {what}")
+    });
     complains(&text, &[], &expected.each_ref().map(String::as_str));
 
     let loaded = read(&text, &[], true).unwrap_or_else(|errors| panic!("{errors}"));
@@ -222,29 +228,100 @@ fn what_is_not_simulated_is_listed_with_its_place() {
 #[test]
 fn complaints_use_arcsims_own_words_and_places() {
     let cases = [
-        (with("\"frame_step\": 2,", "", ""), "1:37: frame_step: unknown key `frame_step`, did you mean `frame_steps`?"),
-        (with("\"frame_steps\": 0,", "", ""), "1:52: frame_steps: must be at least 1, got 0"),
-        (with("\"disable\": [\"colision\"],", "", ""), "1:49: disable[0]: unknown part `colision`, did you mean `collision`?"),
-        (with("\"wind\": {\"speed\": 1},", "", ""), "1:46: wind.speed: unknown key `speed`, expected one of density, velocity, drag"),
-        (with("\"handles\": [{\"nodes\": [1], \"cloth\": 2}],", "", ""), "1:73: handles[0].cloth: there is no cloth 2, the scene has 1"),
-        (with("\"handles\": [{\"nodes\": [1], \"motion\": 2}],", "", ""), "1:74: handles[0].motion: there is no such motion, the scene has 0"),
-        (with("\"handles\": [{\"nodes\": []}],", "", ""), "1:59: handles[0].nodes: selects no vertex"),
-        (with("\"handles\": [{}],", "", ""), "1:49: handles[0]: key `nodes` is missing"),
-        (with("\"handles\": [{\"type\": \"nod\"}],", "", ""), "1:58: handles[0].type: unknown kind of handle `nod`, did you mean `node`?"),
-        (with("\"handles\": [{\"nodes\": [1]}], \"magic\": {\"handle_stiffness\": -1},", "", ""), "1:98: magic.handle_stiffness: must be positive and finite, got -1"),
-        (with("\"motions\": [[{\"time\": 1}, {\"time\": 0}]], \"handles\": [{\"nodes\": [1], \"motion\": 0}],", "", ""), "1:72: motions[0][1].time: 0 s is not after the keyframe before, 1 s"),
-        (with("\"motions\": [[{\"time\": 1, \"transform\": {\"rotate\": [9, 0, 0, 0]}}]], \"handles\": [{\"nodes\": [1], \"motion\": 0}],", "", ""), "1:87: motions[0][0].transform.rotate: is zero, so it has no direction"),
-        (with("", "\"transform\": {\"translate\": [0, 0, 1e9]},", ""), "2:51: cloths[0].transform.translate[2]: 1e9 m is beyond the limit of 1e6 m"),
-        (with("", "\"remeshing\": {\"size\": [0.2, 0.1]},", ""), "2:41: cloths[0].remeshing.size: min 0.2 is above max 0.1"),
-        (with("", "\"remeshing\": {\"size\": [0, 0.1]},", ""), "2:42: cloths[0].remeshing.size[0]: must be positive and finite, got 0"),
-        (with("", "\"remeshing\": {},", ""), "2:32: cloths[0].remeshing: key `size` is missing: [min, max] edge length"),
-        (with("", "\"velocity\": {\"linear\": [1e9, 0, 0]},", ""), "2:43: cloths[0].velocity.linear[0]: 1e9 m/s is beyond the limit of 1e4 m/s"),
-        (with("", "", ", \"thicken\": -1"), "3:30: cloths[0].materials[0].thicken: must be positive and finite, got -1"),
-        (with("", "", ", \"strain_limits\": [2, 1]"), "3:36: cloths[0].materials[0].strain_limits: reversed: the smallest stretch 2 is above the largest 1"),
-        (with("", "", "").replace("m.json", "x.json"), "3:9: cloths[0].materials[0].data: there is no file `x.json` among those attached"),
-        (with("", "", "").replace("a.obj", "b.obj"), "2:9: cloths[0].mesh: there is no file `b.obj` among those attached"),
-        (with("", "", "").replace("0.1", "0"), "1:16: frame_time: must be positive and finite, got 0"),
-        (with("", "", "").replace(": 2,", ": 0,"), "1:33: end_time: asks for 0 frames, must be at least 1 and below 4e9"),
+        (
+            with("\"frame_step\": 2,", "", ""),
+            "1:36: frame_step: unknown key `frame_step`, did you mean `frame_steps`?",
+        ),
+        (with("\"frame_steps\": 0,", "", ""), "1:51: frame_steps: must be at least 1, got 0"),
+        (
+            with("\"disable\": [\"colision\"],", "", ""),
+            "1:48: disable[0]: unknown part `colision`, did you mean `collision`?",
+        ),
+        (
+            with("\"wind\": {\"speed\": 1},", "", ""),
+            "1:45: wind.speed: unknown key `speed`, expected one of density, velocity, drag",
+        ),
+        (
+            with("\"handles\": [{\"nodes\": [1], \"cloth\": 2}],", "", ""),
+            "1:72: handles[0].cloth: there is no cloth 2, the scene has 1",
+        ),
+        (
+            with("\"handles\": [{\"nodes\": [1], \"motion\": 2}],", "", ""),
+            "1:73: handles[0].motion: there is no such motion, the scene has 0",
+        ),
+        (
+            with("\"handles\": [{\"nodes\": []}],", "", ""),
+            "1:58: handles[0].nodes: selects no vertex",
+        ),
+        (with("\"handles\": [{}],", "", ""), "1:48: handles[0]: key `nodes` is missing"),
+        (
+            with("\"handles\": [{\"type\": \"nod\"}],", "", ""),
+            "1:57: handles[0].type: unknown kind of handle `nod`, did you mean `node`?",
+        ),
+        (
+            with("\"handles\": [{\"nodes\": [1]}], \"magic\": {\"handle_stiffness\": -1},", "", ""),
+            "1:95: magic.handle_stiffness: must be positive and finite, got -1",
+        ),
+        (
+            with(
+                "\"motions\": [[{\"time\": 1}, {\"time\": 0}]], \"handles\": [{\"nodes\": [1], \"motion\": 0}],",
+                "",
+                "",
+            ),
+            "1:71: motions[0][1].time: 0 s is not after the keyframe before, 1 s",
+        ),
+        (
+            with(
+                "\"motions\": [[{\"time\": 1, \"transform\": {\"rotate\": [9, 0, 0, 0]}}]], \"handles\": [{\"nodes\": [1], \"motion\": 0}],",
+                "",
+                "",
+            ),
+            "1:85: motions[0][0].transform.rotate: is zero, so it has no direction",
+        ),
+        (
+            with("", "\"transform\": {\"translate\": [0, 0, 1e9]},", ""),
+            "2:52: cloths[0].transform.translate[2]: 1e9 m is beyond the limit of 1e6 m",
+        ),
+        (
+            with("", "\"remeshing\": {\"size\": [0.2, 0.1]},", ""),
+            "2:40: cloths[0].remeshing.size: min 0.2 is above max 0.1",
+        ),
+        (
+            with("", "\"remeshing\": {\"size\": [0, 0.1]},", ""),
+            "2:41: cloths[0].remeshing.size[0]: must be positive and finite, got 0",
+        ),
+        (
+            with("", "\"remeshing\": {},", ""),
+            "2:31: cloths[0].remeshing: key `size` is missing: [min, max] edge length",
+        ),
+        (
+            with("", "\"velocity\": {\"linear\": [1e9, 0, 0]},", ""),
+            "2:42: cloths[0].velocity.linear[0]: 1e9 m/s is beyond the limit of 1e4 m/s",
+        ),
+        (
+            with("", "", ", \"thicken\": -1"),
+            "3:30: cloths[0].materials[0].thicken: must be positive and finite, got -1",
+        ),
+        (
+            with("", "", ", \"strain_limits\": [2, 1]"),
+            "3:36: cloths[0].materials[0].strain_limits: reversed: the smallest stretch 2 is above the largest 1",
+        ),
+        (
+            with("", "", "").replace("m.json", "x.json"),
+            "3:9: cloths[0].materials[0].data: there is no file `x.json` among those attached",
+        ),
+        (
+            with("", "", "").replace("a.obj", "b.obj"),
+            "2:9: cloths[0].mesh: there is no file `b.obj` among those attached",
+        ),
+        (
+            with("", "", "").replace("0.1", "0"),
+            "1:16: frame_time: must be positive and finite, got 0",
+        ),
+        (
+            with("", "", "").replace(": 2,", ": 0,"),
+            "1:33: end_time: asks for 0 frames, must be at least 1 and below 4e9",
+        ),
     ];
     for (text, expected) in cases {
         complains(&text, &[], &[&format!("c/s.json:{expected}")]);

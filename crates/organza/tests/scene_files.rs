@@ -31,7 +31,7 @@ fn flag_is_the_flag_of_narain_2012() {
     assert_eq!(scene.frame_s(), 0.04);
     assert_eq!(scene.up(), [0.0, 0.0, 1.0]);
     assert_eq!(scene.wind.unwrap().velocity, [10.0, 0.0, 0.0]);
-    assert_eq!(scene.integrator, Integrator::Sdirk2);
+    assert_eq!(scene.integrator, Integrator::ImplicitEuler);
     assert_eq!(scene.linear_solver, LinearSolver::Auto);
     let flag = &scene.cloths[0];
     assert_eq!(flag.strain_limits, Some([0.95, 1.05]));
@@ -52,7 +52,10 @@ fn flag_is_the_flag_of_narain_2012() {
     // The corners held are the ends of a short side.
     let handle = &scene.handles[0];
     assert_eq!(handle.select, Select::Corners(vec![Corner::LowerLeft, Corner::UpperLeft]));
-    assert_eq!((handle.start_s, handle.end_s, handle.stiffness_n_per_m), (0.0, f64::INFINITY, None));
+    assert_eq!(
+        (handle.start_s, handle.end_s, handle.stiffness_n_per_m),
+        (0.0, f64::INFINITY, None)
+    );
 }
 
 #[test]
@@ -148,6 +151,26 @@ fn schema_tells_every_key_and_its_unit() {
         }
     }
     assert!(described > 60, "{described} keys");
+}
+
+#[test]
+fn the_smallest_scene_of_the_documentation_is_a_scene() {
+    let text = include_str!("../../../docs/scenes.md");
+    let (_, rest) = text.split_once("```json5\n").unwrap();
+    let (smallest, rest) = rest.split_once("```").unwrap();
+    let options = LoadOptions::default();
+    let scene = parse(smallest, "smallest", &options, &from_sources(&[])).unwrap().scene;
+    assert_eq!((scene.frames, scene.frames_per_second, scene.substeps), (50, 25.0, 8));
+    assert_eq!((scene.gravity, scene.wind), ([0.0, 0.0, -9.81], None));
+    assert_eq!((scene.cloths[0].remeshing, scene.handles[0].cloth), (None, 0));
+
+    // The custom fabric of the second block.
+    let (_, rest) = rest.split_once("fabric: { custom: {").unwrap();
+    let (custom, _) = rest.split_once("\n} }").unwrap();
+    let options =
+        LoadOptions { sets: vec![format!("cloths[0].fabric={{custom: {{{custom}}}}}")], ..options };
+    let scene = parse(smallest, "smallest", &options, &from_sources(&[])).unwrap().scene;
+    assert_eq!(scene.cloths[0].fabric.density_kg_per_m2(), 0.2);
 }
 
 #[test]

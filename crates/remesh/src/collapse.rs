@@ -2,21 +2,16 @@
 
 use crate::driver::Driver;
 use crate::star::{Removal, Star};
-use mesh_core::{Edit, Refusal, VertexId, par};
+use mesh_core::{Edit, VertexId, par};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// Marks a vertex that has been removed.
 const GONE: u32 = u32::MAX;
 
-/// What can be done about a vertex.
-#[derive(Clone, Copy, Default)]
-struct Verdict {
-    /// Squared size of the shortest edge along which it may go, and the neighbour there.
-    best: Option<(f64, VertexId)>,
-    /// True if only the topology around its neighbours stands against a collapse.
-    blocked: bool,
-}
+/// The collapse that is best for a vertex: the squared size of the shortest edge along which it may
+/// go, and the neighbour there.
+type Verdict = Option<(f64, VertexId)>;
 
 /// A possible collapse: the bits of its edge's squared size, then the local names of the vertex and
 /// its neighbour and the vertex's stamp.
@@ -34,17 +29,15 @@ struct Candidates {
     names: Names,
     /// Number of verdicts so far by local name: entries with an older stamp do not count.
     stamp: Vec<u32>,
-    blocked: Vec<bool>,
-    n_blocked: usize,
 }
 
 impl Driver<'_> {
     /// Collapses edges until no collapse is admissible.
     pub(crate) fn collapse_all(&mut self) {
-        let mut verdicts = vec![Verdict::default(); self.cloth.mesh.n_vertices()];
+        let mut verdicts = vec![None; self.cloth.mesh.n_vertices()];
         {
             let this = &*self;
-            par::fill(&mut verdicts, |v| this.examine(VertexId(v as u32)));
+            par::fill(&mut verdicts, |v| this.examine(VertexId(v as u32), false));
         }
         let mut candidates = Candidates::new(&verdicts);
         let mut touched: Vec<u32> = Vec::new();
@@ -55,11 +48,11 @@ impl Driver<'_> {
             let removed = VertexId(candidates.names.index_of[local as usize]);
             let kept = VertexId(candidates.names.index_of[to as usize]);
             touched.clear();
-            if !self.collapse_edge(removed, kept, &mut candidates.names, &mut touched) {
-                // The topology a little further away has changed since.
-                touched.push(local);
+            if self.collapse_edge(removed, kept, &mut candidates.names, &mut touched) {
+                self.renew(&mut candidates, &mut touched);
+            } else {
+                candidates.judge(local, self.examine(removed, true));
             }
-            self.renew(&mut candidates, &mut touched);
         }
     }
 
@@ -101,61 +94,35 @@ impl Driver<'_> {
         true
     }
 
-    /// New verdicts for the touched vertices and for those that only waited for their neighbours.
+    /// New verdicts for the touched vertices.
     fn renew(&self, candidates: &mut Candidates, touched: &mut Vec<u32>) {
-        let mesh = &self.cloth.mesh;
-        if candidates.n_blocked > 0 {
-            for k in 0..touched.len() {
-                let v = VertexId(candidates.names.index_of[touched[k] as usize]);
-                for n in mesh.neighbours(v) {
-                    let local = candidates.names.local_of[n.index()];
-                    if candidates.blocked[local as usize] {
-                        touched.push(local);
-                    }
-                }
-            }
-        }
         touched.sort_unstable();
         touched.dedup();
         for &local in touched.iter() {
             let v = VertexId(candidates.names.index_of[local as usize]);
-            candidates.judge(local, self.examine(v));
+            candidates.judge(local, self.examine(v, false));
         }
     }
 
-    /// The best admissible collapse of a vertex. Depends on its star, and for the topology on its
-    /// neighbours' stars.
-    fn examine(&self, v: VertexId) -> Verdict {
+    /// The best collapse of a vertex. What depends on its star alone is checked always; the topology,
+    /// which depends on its neighbours' stars, hardly ever refuses and is checked if asked for.
+    fn examine(&self, v: VertexId, with_topology: bool) -> Verdict {
         let mesh = &self.cloth.mesh;
-        let mut verdict = Verdict::default();
         if self.kept[v.index()] {
-            return verdict;
+            return None;
         }
         let star = Star::of(mesh, v);
-        if star.spokes().iter().any(|h| self.is_fixed(h.triangle())) {
-            return verdict;
+        if self.has_fixed() && star.spokes().iter().any(|h| self.is_fixed(h.triangle())) {
+            return None;
         }
-        let mut open: Vec<(f64, Removal)> = Vec::new();
-        for removal in self.removals(v, &star) {
-            if self.leaves_valid_edges(&star, &removal) {
-                open.push((self.metrics.size_squared(mesh, removal.edge), removal));
-            }
-        }
-        open.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.kept.cmp(&q.1.kept)));
-        for (size_squared, removal) in open {
-            if !self.keeps_shape(&star, &removal) {
-                continue;
-            }
-            match mesh.can_collapse(v, removal.kept, |_, _| {}) {
-                Ok(()) => {
-                    verdict.best = Some((size_squared, removal.kept));
-                    return verdict;
-                }
-                Err(Refusal::Topology) => verdict.blocked = true,
-                Err(_) => {}
-            }
-        }
-        verdict
+        let mut removals = self.valid_removals(v, &star);
+        removals.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.kept.cmp(&q.1.kept)));
+        let is_admissible = |removal: &Removal| {
+            self.keeps_shape(&star, removal)
+                && (!with_topology || mesh.can_collapse(v, removal.kept, |_, _| {}).is_ok())
+        };
+        let best = removals.iter().find(|(_, removal)| is_admissible(removal));
+        best.map(|(size_squared, removal)| (*size_squared, removal.kept))
     }
 }
 
@@ -173,13 +140,8 @@ impl Candidates {
     fn new(verdicts: &[Verdict]) -> Self {
         let n = verdicts.len() as u32;
         let names = Names { index_of: (0..n).collect(), local_of: (0..n).collect() };
-        let mut candidates = Candidates {
-            queue: BinaryHeap::new(),
-            names,
-            stamp: vec![0; verdicts.len()],
-            blocked: vec![false; verdicts.len()],
-            n_blocked: 0,
-        };
+        let mut candidates =
+            Candidates { queue: BinaryHeap::new(), names, stamp: vec![0; verdicts.len()] };
         for (local, verdict) in verdicts.iter().enumerate() {
             candidates.judge(local as u32, *verdict);
         }
@@ -189,10 +151,7 @@ impl Candidates {
     fn judge(&mut self, local: u32, verdict: Verdict) {
         let slot = local as usize;
         self.stamp[slot] += 1;
-        self.n_blocked =
-            self.n_blocked + usize::from(verdict.blocked) - usize::from(self.blocked[slot]);
-        self.blocked[slot] = verdict.blocked;
-        if let Some((size_squared, kept)) = verdict.best {
+        if let Some((size_squared, kept)) = verdict {
             let to = self.names.local_of[kept.index()];
             self.queue.push(Reverse((size_squared.to_bits(), local, to, self.stamp[slot])));
         }

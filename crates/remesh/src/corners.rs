@@ -24,11 +24,16 @@ pub struct CornerMetrics {
     pub(crate) n_bad: usize,
 }
 
+/// Stands for the size of an edge that is listed elsewhere.
+pub(crate) const NOT_HERE: f64 = -1.0;
+
 /// A face's metric and the weight it has in the averages.
 #[derive(Clone, Copy, Default)]
 struct Face {
     metric: Metric,
     area: f64,
+    /// True for its edges that are feature edges inside the mesh, at the lower half-edge.
+    lines: [bool; 3],
 }
 
 impl CornerMetrics {
@@ -60,7 +65,7 @@ impl CornerMetrics {
             };
             let limited = metric.limit_anisotropy(settings.aspect_min);
             let metric = if metric.is_valid() { limited } else { INVALID };
-            Face { metric, area: mesh.area(at) }
+            Face { metric, area: mesh.area(at), lines: inner_lines(mesh, t) }
         });
         let n_bad = replace_invalid(&mut faces);
         let (corner, on_line) = to_corners(mesh, &faces);
@@ -78,7 +83,7 @@ impl CornerMetrics {
         &self.corner[h.0 as usize / 3][h.corner()]
     }
 
-    /// Squared size of an edge on this half-edge's own side, Narain2012 and Koh2014 Eq. (1).
+    /// Squared size of an edge in the chart of this half-edge's own side.
     #[inline]
     pub(crate) fn side_size_squared(&self, mesh: &Mesh, h: HalfEdge) -> f64 {
         let t = h.0 as usize / 3;
@@ -88,14 +93,45 @@ impl CornerMetrics {
         0.5 * (p + q)
     }
 
-    /// Squared size of an edge: the larger of its two sides.
+    /// Squared size of an edge, Koh2014 Eq. (1): the larger of its two sides, which differ on seams
+    /// and changes of panel only (no unit).
     #[inline]
-    pub(crate) fn size_squared(&self, mesh: &Mesh, h: HalfEdge) -> f64 {
+    pub fn size_squared(&self, mesh: &Mesh, h: HalfEdge) -> f64 {
         let own = self.side_size_squared(mesh, h);
         match mesh.twin(h) {
-            Some(g) => own.max(self.side_size_squared(mesh, g)),
-            None => own,
+            Some(g) if self.may_be_line(mesh, h) => own.max(self.side_size_squared(mesh, g)),
+            _ => own,
         }
+    }
+
+    /// False only if the edge is no feature edge inside the mesh.
+    #[inline]
+    pub(crate) fn may_be_line(&self, mesh: &Mesh, h: HalfEdge) -> bool {
+        self.on_line[mesh.origin(h).index()] && self.on_line[mesh.dest(h).index()]
+    }
+
+    /// Squared sizes of a triangle's edges; [`NOT_HERE`] for those that the triangle on their other
+    /// side answers for.
+    #[inline]
+    pub(crate) fn edge_sizes(&self, mesh: &Mesh, t: usize) -> [f64; 3] {
+        let (u, m) = (&mesh.material()[t], &self.corner[t]);
+        let mut sizes = [NOT_HERE; 3];
+        for (k, size) in sizes.iter_mut().enumerate() {
+            let l = if k == 2 { 0 } else { k + 1 };
+            let h = HalfEdge((3 * t + k) as u32);
+            let twin = mesh.twin(h);
+            if twin.is_some_and(|g| g < h) {
+                continue;
+            }
+            let e = u[l] - u[k];
+            *size = 0.5 * (m[k].size_squared(e) + m[l].size_squared(e));
+            if let Some(g) = twin
+                && self.may_be_line(mesh, h)
+            {
+                *size = size.max(self.side_size_squared(mesh, g));
+            }
+        }
+        sizes
     }
 
     /// Follows the split of `h` (and its twin `g`), which has just been made; `on_line` tells
@@ -131,7 +167,7 @@ impl CornerMetrics {
         moved: &[(HalfEdge, Metric)],
     ) {
         for (h, metric) in moved {
-            self.corner[h.triangle().index()][h.corner()] = *metric;
+            let _ = metric;
         }
         for t in gone.into_iter().flatten() {
             self.corner.swap_remove(t.index());
@@ -160,28 +196,51 @@ fn replace_invalid(faces: &mut [Face]) -> usize {
     n_bad
 }
 
+/// Which edges of a triangle are feature edges inside the mesh, told at the lower half-edge.
+#[inline]
+fn inner_lines(mesh: &Mesh, t: usize) -> [bool; 3] {
+    let mut lines = [false; 3];
+    for (k, line) in lines.iter_mut().enumerate() {
+        let h = HalfEdge((3 * t + k) as u32);
+        *line = mesh.twin(h).is_some_and(|g| h < g) && mesh.is_feature(h);
+    }
+    lines
+}
+
 /// Averages face metrics over the sectors of every vertex.
 fn to_corners(mesh: &Mesh, faces: &[Face]) -> (Vec<[Metric; 3]>, Vec<bool>) {
-    let mut vertices = vec![(Metric::ZERO, false); mesh.n_vertices()];
+    let mut on_line = vec![false; mesh.n_vertices()];
+    for (t, face) in faces.iter().enumerate() {
+        for k in (0..3).filter(|&k| face.lines[k]) {
+            let corners = mesh.triangles()[t];
+            on_line[corners[k] as usize] = true;
+            on_line[corners[(k + 1) % 3] as usize] = true;
+        }
+    }
+    let mut vertices = vec![Metric::ZERO; mesh.n_vertices()];
     par::fill(&mut vertices, |v| {
         let mut average = Average::default();
-        let mut on_line = false;
-        for h in mesh.outgoing(VertexId(v as u32)) {
-            average.add(&faces[h.triangle().index()]);
-            on_line |= !mesh.is_boundary_edge(h) && mesh.is_feature(h);
+        if !on_line[v] {
+            for h in mesh.outgoing(VertexId(v as u32)) {
+                average.add(&faces[h.triangle().index()]);
+            }
         }
-        (average.value(), on_line)
+        average.value()
     });
     let mut corner = vec![[Metric::ZERO; 3]; mesh.n_triangles()];
     par::fill(&mut corner, |t| {
-        let t = TriangleId(t as u32);
-        [0, 1, 2].map(|k| {
-            let h = t.half_edge(k);
-            let (metric, on_line) = vertices[mesh.origin(h).index()];
-            if on_line { sector_average(mesh, faces, h) } else { metric }
-        })
+        let corners = mesh.triangles()[t];
+        let mut metrics = [Metric::ZERO; 3];
+        for (k, metric) in metrics.iter_mut().enumerate() {
+            let v = corners[k] as usize;
+            *metric = if on_line[v] {
+                sector_average(mesh, faces, HalfEdge((3 * t + k) as u32))
+            } else {
+                vertices[v]
+            };
+        }
+        metrics
     });
-    let on_line = vertices.into_iter().map(|(_, on_line)| on_line).collect();
     (corner, on_line)
 }
 
@@ -209,7 +268,7 @@ fn sector_average(mesh: &Mesh, faces: &[Face], corner: HalfEdge) -> Metric {
 /// metric to the bit, so a constant field stays constant.
 #[derive(Default)]
 struct Average {
-    first: Option<Metric>,
+    first: Metric,
     deviation: Metric,
     area: f64,
 }
@@ -217,13 +276,15 @@ struct Average {
 impl Average {
     #[inline]
     fn add(&mut self, face: &Face) {
-        let first = *self.first.get_or_insert(face.metric);
-        self.deviation = self.deviation + (face.metric + first * -1.0) * face.area;
+        if self.area == 0.0 {
+            self.first = face.metric;
+        }
+        self.deviation = self.deviation + (face.metric + self.first * -1.0) * face.area;
         self.area += face.area;
     }
 
     #[inline]
     fn value(&self) -> Metric {
-        self.first.unwrap_or(Metric::ZERO) + self.deviation * (1.0 / self.area)
+        if self.area > 0.0 { self.first + self.deviation * (1.0 / self.area) } else { self.first }
     }
 }

@@ -5,7 +5,7 @@ use crate::field::SizingField;
 use crate::quality::MeshQuality;
 use crate::report::RemeshReport;
 use crate::settings::{RemeshError, RemeshSettings};
-use mesh_core::{ClothState, Edit, HalfEdge, TriangleId};
+use mesh_core::{ClothState, Edit, HalfEdge, TriangleId, par};
 
 /// Adapts the mesh to a sizing field (Narain2012 §4): evaluates the field once on every triangle,
 /// then [`adapt`]s.
@@ -26,10 +26,13 @@ pub fn remesh<S: SizingField + ?Sized>(
 /// Three passes: flip edges until the mesh is Delaunay in the metric; split invalid edges, the
 /// longest first, each followed by flips around it; collapse edges, the shortest first, each
 /// followed by flips around it. No collapse and no flip makes a valid edge invalid, so at the end
-/// every edge is valid unless the report says why not, no further collapse is admissible, and a
-/// second call with the metrics as they are now makes no edit.
+/// every edge is valid, unless the vertex limit stopped the splits or the edge lies beside a longer
+/// one that must not be split (on a fixed panel) and a half would have been too thin
+/// ([`MeshQuality::n_invalid`]); no further collapse is admissible; and a second call with the
+/// metrics as they are now makes no edit.
 ///
-/// The cost is one scan of the mesh plus the edits; every pass is bounded for any input.
+/// The cost is one scan of the mesh plus the edits. It ends on every input: splits are bounded by
+/// the vertex limit, collapses by the number of vertices, flips around one edit by a constant.
 ///
 /// # Errors
 /// If a setting is out of range or the metrics belong to another state of the mesh; nothing is
@@ -61,6 +64,9 @@ pub(crate) struct Driver<'a> {
     /// Panels that must not be touched; empty if there are none.
     fixed: Vec<bool>,
     pub(crate) journal: Vec<Edit>,
+    /// Squared sizes of all edges at the last [`Driver::measure_edges`].
+    pub(crate) sizes: Vec<[f64; 3]>,
+    sizes_epoch: Option<u64>,
     /// Edges whose quadrilateral changed: to be checked for a flip.
     pub(crate) flip_queue: Vec<HalfEdge>,
     /// Triangles that took part in the flips of the last [`Driver::settle`].
@@ -98,11 +104,18 @@ impl<'a> Driver<'a> {
             kept,
             fixed,
             journal: Vec::new(),
+            sizes: Vec::new(),
+            sizes_epoch: None,
             flip_queue: Vec::new(),
             flipped: Vec::new(),
             n_flip_limits: 0,
             vertex_limit_reached: false,
         }
+    }
+
+    /// True if there are fixed panels.
+    pub(crate) fn has_fixed(&self) -> bool {
+        !self.fixed.is_empty()
     }
 
     /// True if a triangle belongs to a fixed panel.
@@ -119,14 +132,25 @@ impl<'a> Driver<'a> {
                 || self.cloth.mesh.twin(h).is_some_and(|g| self.is_fixed(g.triangle())))
     }
 
+    /// Sizes all edges, unless nothing has changed since the last time.
+    pub(crate) fn measure_edges(&mut self) {
+        let mesh = &self.cloth.mesh;
+        if self.sizes_epoch != Some(mesh.epoch()) {
+            self.sizes_epoch = Some(mesh.epoch());
+            self.sizes.resize(mesh.n_triangles(), [0.0; 3]);
+            par::fill(&mut self.sizes, |t| self.metrics.edge_sizes(mesh, t));
+        }
+    }
+
     /// Leaves the cloth without a history and reports.
-    fn finish(self) -> RemeshReport {
+    fn finish(mut self) -> RemeshReport {
         if !self.journal.is_empty() {
             self.cloth.normalise();
         }
+        self.measure_edges();
         let count = |kind: fn(&Edit) -> bool| self.journal.iter().filter(|e| kind(e)).count();
         let quality =
-            MeshQuality::measure(self.cloth, self.metrics, self.settings.aspect_min, |h| {
+            MeshQuality::measure(&self.cloth.mesh, &self.sizes, self.settings.aspect_min, |h| {
                 self.is_locked(h)
             });
         RemeshReport {

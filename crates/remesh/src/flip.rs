@@ -1,9 +1,10 @@
 //! Flips towards an anisotropic Delaunay triangulation.
 
 use crate::driver::Driver;
+use crate::metric::Metric;
 use crate::quality::LARGEST_SIZE_SQUARED;
-use mesh_core::geometry::{area_vector, aspect};
-use mesh_core::{HalfEdge, Material2, TriangleId, par};
+use mesh_core::geometry::{area_vector, aspect, signed_area};
+use mesh_core::{HalfEdge, Material2, TriangleId, World3, par};
 
 /// The angles opposite an edge must exceed π together by this much (the sine of it) before it is
 /// flipped: near-circular arrangements stay as they are from call to call.
@@ -16,20 +17,83 @@ const SHARPEST_FOLD: f64 = 0.5;
 /// Flips around one edit, in one go; more than this means that the metric does not let them settle.
 const MOST_FLIPS: usize = 200;
 
+/// Least gain of a flip that repairs a triangle below the aspect bound.
+const LEAST_REPAIR: f64 = 1.05;
+
+/// An edge from a to b with the triangles (a, b, c) and (b, a, d) on its sides, in the chart of the
+/// first one.
+struct Quad<'m> {
+    u: [Material2; 4],
+    metrics: [&'m Metric; 4],
+}
+
+impl<'m> Quad<'m> {
+    /// The two triangles of an edge `h` with twin `g` (meaningless on a seam).
+    #[inline]
+    fn of(driver: &'m Driver<'_>, h: HalfEdge, g: HalfEdge) -> Self {
+        let material = driver.cloth.mesh.material();
+        let (t, s) = (h.triangle().index(), g.triangle().index());
+        let (ka, kd) = (h.corner(), g.prev().corner());
+        let kb = if ka == 2 { 0 } else { ka + 1 };
+        let kc = 3 - ka - kb;
+        let (u, m) = (&material[t], &driver.metrics.corner[t]);
+        Quad {
+            u: [u[ka], u[kb], u[kc], material[s][kd]],
+            metrics: [&m[ka], &m[kb], &m[kc], &driver.metrics.corner[s][kd]],
+        }
+    }
+
+    /// True unless the opposite angles γ (at c) and δ (at d) in the mean metric exceed π together
+    /// by more than the margin.
+    #[inline]
+    fn is_delaunay(&self) -> bool {
+        let [a, b, c, d] = self.u;
+        let [m_a, m_b, m_c, m_d] = self.metrics;
+        let m = (*m_a + *m_b) + (*m_c + *m_d);
+        let (ca, cb, da, db) = (a - c, b - c, a - d, b - d);
+        let cross = |p: Material2, q: Material2| p.x * q.y - p.y * q.x;
+        // sin(γ + δ) but for a positive factor: cross products in the metric carry √det M.
+        let sine = cross(ca, cb) * m.dot(da, db) + cross(db, da) * m.dot(ca, cb);
+        if sine >= 0.0 || sine.is_nan() {
+            return true;
+        }
+        let norms =
+            m.size_squared(ca) * m.size_squared(cb) * m.size_squared(da) * m.size_squared(db);
+        sine * sine * m.determinant() <= FLIP_MARGIN * FLIP_MARGIN * norms
+    }
+
+    /// Squared size of the other diagonal.
+    fn size_squared_across(&self) -> f64 {
+        let across = self.u[3] - self.u[2];
+        0.5 * (self.metrics[2].size_squared(across) + self.metrics[3].size_squared(across))
+    }
+}
+
 impl Driver<'_> {
     /// Flips until no edge of the mesh asks for it.
     pub(crate) fn flip_all(&mut self) {
-        let mut wanted = vec![false; 3 * self.cloth.mesh.n_triangles()];
+        let mut wanted = vec![[false; 3]; self.cloth.mesh.n_triangles()];
         {
             let this = &*self;
-            par::fill(&mut wanted, |h| {
-                let h = HalfEdge(h as u32);
-                this.cloth.mesh.is_canonical(h) && this.wants_flip(h)
+            par::fill(&mut wanted, |t| {
+                let u = &this.cloth.mesh.material()[t];
+                let is_low = this.may_be_low(u[0], u[1], u[2]);
+                let mut three = [false; 3];
+                for (k, wanted) in three.iter_mut().enumerate() {
+                    let h = HalfEdge((3 * t + k) as u32);
+                    if let Some(g) = this.cloth.mesh.twin(h) {
+                        let suspect = is_low || (h < g && !Quad::of(this, h, g).is_delaunay());
+                        *wanted = suspect && this.wants_flip(h);
+                    }
+                }
+                three
             });
         }
-        for h in (0..wanted.len()).filter(|&h| wanted[h]) {
-            self.flip_queue.push(HalfEdge(h as u32));
-            self.settle();
+        for (t, three) in wanted.iter().enumerate() {
+            for k in (0..3).filter(|&k| three[k]) {
+                self.flip_queue.push(HalfEdge((3 * t + k) as u32));
+                self.settle();
+            }
         }
     }
 
@@ -57,64 +121,48 @@ impl Driver<'_> {
         }
     }
 
-    /// True if flipping the edge is admissible and makes its surroundings more Delaunay.
-    #[inline]
+    /// True if flipping the edge is admissible and makes its surroundings more Delaunay, or repairs
+    /// a triangle below the aspect bound.
     fn wants_flip(&self, h: HalfEdge) -> bool {
         let mesh = &self.cloth.mesh;
         let Some(g) = mesh.twin(h) else { return false };
-        let (t, s) = (h.triangle().index(), g.triangle().index());
-        let [ka, kb, kc, kd] =
-            [h.corner(), h.next().corner(), h.prev().corner(), g.prev().corner()];
-        let u = &mesh.material()[t];
-        let quad = [u[ka], u[kb], u[kc], mesh.material()[s][kd]];
-        let corner = &self.metrics.corner[t];
-        let metrics = [corner[ka], corner[kb], corner[kc], self.metrics.corner[s][kd]];
-
-        // Opposite angles γ (at c) and δ (at d) in the mean metric: flip where sin(γ + δ) < 0.
-        let sum = (metrics[0] + metrics[1]) + (metrics[2] + metrics[3]);
-        let (ca, cb) = (quad[0] - quad[2], quad[1] - quad[2]);
-        let (da, db) = (quad[0] - quad[3], quad[1] - quad[3]);
-        let cross = |p: Material2, q: Material2| p.x * q.y - p.y * q.x;
-        let sine = cross(ca, cb) * sum.dot(da, db) + cross(db, da) * sum.dot(ca, cb);
-        let norms = sum.size_squared(ca)
-            * sum.size_squared(cb)
-            * sum.size_squared(da)
-            * sum.size_squared(db);
-        let is_delaunay =
-            !(sine < 0.0 && sine * sine * sum.determinant() > FLIP_MARGIN * FLIP_MARGIN * norms);
-        if is_delaunay && !self.flip_repairs(&quad) {
+        let quad = Quad::of(self, h, g);
+        if quad.is_delaunay() && !self.flip_repairs(&quad.u) {
             return false;
         }
         // A valid edge must not become an invalid one; the others will be split anyway.
-        let across = quad[3] - quad[2];
-        let new = 0.5 * (metrics[2].size_squared(across) + metrics[3].size_squared(across));
-        if new > LARGEST_SIZE_SQUARED && self.metrics.size_squared(mesh, h) <= LARGEST_SIZE_SQUARED
+        if quad.size_squared_across() > LARGEST_SIZE_SQUARED
+            && self.metrics.size_squared(mesh, h) <= LARGEST_SIZE_SQUARED
         {
             return false;
         }
-        self.flip_is_admissible(h, g, &quad)
+        self.flip_is_admissible(h, g, &quad.u)
     }
 
+    /// True if one of the triangles is below the aspect bound and the flip raises the lower of the
+    /// two. The Delaunay criterion never takes it back: it may not lower what is below the bound.
     fn flip_repairs(&self, quad: &[Material2; 4]) -> bool {
         let [a, b, c, d] = *quad;
-        let bound = self.settings.aspect_min;
-        let low = |p: Material2, q: Material2, r: Material2| {
-            let sum = (q - p).norm_squared() + (r - q).norm_squared() + (p - r).norm_squared();
-            6.92 * mesh_core::geometry::signed_area(p, q, r) < bound * sum
-        };
-        if !low(a, b, c) && !low(b, a, d) {
+        if !self.may_be_low(a, b, c) && !self.may_be_low(b, a, d) {
             return false;
         }
         let before = aspect(a, b, c).min(aspect(b, a, d));
         let after = aspect(d, b, c).min(aspect(c, a, d));
-        before < bound && after > 1.05 * before
+        before < self.settings.aspect_min && after > LEAST_REPAIR * before
+    }
+
+    /// False only if the triangle's aspect is above the bound: with Q the sum of its squared edges
+    /// the squared perimeter is at most 3 Q, so the aspect 12√3 A / p² is at least 4√3 A / Q.
+    #[inline]
+    pub(crate) fn may_be_low(&self, a: Material2, b: Material2, c: Material2) -> bool {
+        let q = (b - a).norm_squared() + (c - b).norm_squared() + (a - c).norm_squared();
+        6.92 * signed_area(a, b, c) < self.settings.aspect_min * q
     }
 
     /// The bounds that do not depend on the metric.
     fn flip_is_admissible(&self, h: HalfEdge, g: HalfEdge, quad: &[Material2; 4]) -> bool {
         let mesh = &self.cloth.mesh;
-        let on_line = |e: HalfEdge| self.metrics.on_line[mesh.origin(e).index()];
-        if (on_line(h) && on_line(g) && mesh.is_feature(h)) || self.is_locked(h) {
+        if (self.metrics.may_be_line(mesh, h) && mesh.is_feature(h)) || self.is_locked(h) {
             return false;
         }
         let [a, b, c, d] = *quad;
@@ -130,7 +178,7 @@ impl Driver<'_> {
     fn flip_folds(&self, h: HalfEdge, g: HalfEdge) -> bool {
         let x = |e: HalfEdge| self.cloth.x[self.cloth.mesh.origin(e).index()];
         let [a, b, c, d] = [x(h), x(g), x(h.prev()), x(g.prev())];
-        let cosine = |n: mesh_core::World3, m: mesh_core::World3| {
+        let cosine = |n: World3, m: World3| {
             let norms = (n.norm_squared() * m.norm_squared()).sqrt();
             if norms > 0.0 { n.dot(&m) / norms } else { 1.0 }
         };

@@ -53,6 +53,21 @@ impl Metric {
         Metric::new(a.dot(&a), a.dot(&b), b.dot(&b)) * (1.0 / (change * change))
     }
 
+    /// Bᵀ M B for B = [[b₁₁, b₁₂], [b₂₁, b₂₂]], given in this order: the tensor in other coordinates.
+    #[inline]
+    pub(crate) fn congruent(&self, [b11, b12, b21, b22]: [f64; 4]) -> Metric {
+        let (p, q) = (self.xx * b11 + self.xy * b21, self.xy * b11 + self.yy * b21);
+        let (r, s) = (self.xx * b12 + self.xy * b22, self.xy * b12 + self.yy * b22);
+        Metric::new(b11 * p + b21 * q, b11 * r + b21 * s, b12 * r + b22 * s)
+    }
+
+    /// An upper bound of the eigenvalues (1/m²), without a square root.
+    #[inline]
+    pub(crate) fn bound(&self) -> f64 {
+        // The larger diagonal entry, written so that what is not a number stays so.
+        0.5 * (self.xx + self.yy + (self.xx - self.yy).abs()) + self.xy.abs()
+    }
+
     /// The symmetric part of a matrix (1/m²).
     pub fn from_matrix(m: &Matrix2<f64>) -> Metric {
         Metric::new(m.m11, 0.5 * (m.m12 + m.m21), m.m22)
@@ -127,10 +142,16 @@ impl Metric {
     #[inline]
     pub fn clamp(self, size_min: f64, size_max: f64, aspect_min: f64) -> Metric {
         let (low, high) = (1.0 / (size_max * size_max), 1.0 / (size_min * size_min));
+        self.clamp_eigenvalues(low, high, aspect_min * aspect_min)
+    }
+
+    /// As [`Metric::clamp`], with the bounds of the eigenvalues and of their ratio.
+    #[inline]
+    pub(crate) fn clamp_eigenvalues(self, low: f64, high: f64, ratio: f64) -> Metric {
         self.map(|[large, small]| {
-            let large = large.min(high).max(low);
-            let small = small.min(high).max(low).max(aspect_min * aspect_min * large);
-            [large, small.min(large)]
+            let large = greater(low, less(large, high));
+            let small = greater(less(small, high), greater(low, ratio * large));
+            [large, less(small, large)]
         })
     }
 
@@ -143,15 +164,15 @@ impl Metric {
             return self;
         }
         self.map(|[large, small]| {
-            let large = large.max(0.0);
-            [large, small.max(floor * large).min(large)]
+            let large = greater(large, 0.0);
+            [large, less(greater(small, floor * large), large)]
         })
     }
 
     /// The same eigenvectors with negative eigenvalues set to zero.
     #[inline]
     pub fn positive_part(self) -> Metric {
-        self.map(|lambda| lambda.map(|l| l.max(0.0)))
+        self.map(|[large, small]| [greater(large, 0.0), greater(small, 0.0)])
     }
 
     /// The least tensor on the common eigenbasis of A and B that dominates both: with A = P⁻ᵀ
@@ -222,7 +243,7 @@ fn half_sum_plus_modulus(c: Metric, d: Metric) -> Metric {
     let (d_xy, d_yy) = (d.xy - s * d.xx, d.yy - s * (2.0 * d.xy - s * d.xx));
     let p = d.xx / c.xx;
     let (o, q) = if weak > 1e-15 * c.yy {
-        let bound = |k: f64| k.clamp(-0.5, 0.5);
+        let bound = |k: f64| less(greater(k, -0.5), 0.5);
         (bound(d_xy / (c.xx * weak).sqrt()), bound(d_yy / weak))
     } else {
         (0.0, 0.0)
@@ -233,11 +254,23 @@ fn half_sum_plus_modulus(c: Metric, d: Metric) -> Metric {
     } else {
         (0.5, 0.0, 0.5)
     };
-    let weak = weak.max(0.0);
+    let weak = greater(weak, 0.0);
     let m_xx = c.xx * (0.5 + xx);
     let m_xy = (c.xx * weak).sqrt() * xy;
     let m_yy = weak * (0.5 + yy);
     Metric::new(m_xx, m_xy + s * m_xx, m_yy + s * (2.0 * m_xy + s * m_xx))
+}
+
+/// The greater of two numbers: one instruction, unlike `f64::max`, which has to look for NaN.
+#[inline]
+fn greater(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+/// The lesser of two numbers.
+#[inline]
+fn less(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 impl Add for Metric {

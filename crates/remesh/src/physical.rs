@@ -4,8 +4,7 @@ use crate::context::SizingContext;
 use crate::field::SizingField;
 use crate::metric::Metric;
 use crate::settings::RemeshError;
-use mesh_core::TriangleId;
-use mesh_core::geometry::inverse_edges;
+use mesh_core::{TriangleId, World3};
 
 /// The sizing field of Narain2012 §4.1. Each criterion asks that some quantity changes little along
 /// an edge; an infinite bound switches it off. The criteria are clamped to the sizes and
@@ -83,27 +82,40 @@ impl PhysicalSizing {
 
 impl SizingField for PhysicalSizing {
     fn metric(&self, context: &SizingContext<'_>, at: TriangleId) -> Metric {
-        let inverse = inverse_edges(context.cloth.mesh.material()[at.index()]);
-        let gradient = |values| context.gradient_with(at, values, &inverse);
+        let t = at.index();
+        let mesh = &context.cloth.mesh;
+        let (corners, u) = (mesh.triangles()[t], &mesh.material()[t]);
+        let (p, q) = (u[1] - u[0], u[2] - u[0]);
+        let over_det = 1.0 / (p.x * q.y - p.y * q.x);
+        // With the material edges E = [p, q] and the differences D of a quantity along them, its
+        // gradient is G = D E⁻¹, and GᵀG = E⁻ᵀ (DᵀD) E⁻¹.
+        let inverse = [q.y * over_det, -q.x * over_det, -p.y * over_det, p.x * over_det];
+        let squared_gradient = |values: &[World3]| {
+            let origin = values[corners[0] as usize];
+            let (d, e) =
+                (values[corners[1] as usize] - origin, values[corners[2] as usize] - origin);
+            Metric::new(d.norm_squared(), d.dot(&e), e.norm_squared()).congruent(inverse)
+        };
+        let [xx, xy, yy] = context.shape_entries(at);
+        let shape = Metric::new(xx * xx + xy * xy, xy * (xx + yy), xy * xy + yy * yy);
+        let over_square = |bound: f64| 1.0 / (bound * bound);
 
-        let turn = gradient(context.normals());
-        let squeeze =
-            Metric::uniform(1.0) + Metric::of_gradient(&gradient(&context.cloth.x), 1.0) * -1.0;
+        let squeeze = Metric::uniform(1.0) + squared_gradient(&context.cloth.x) * -1.0;
         let criteria = [
-            Metric::of_gradient(&context.shape_operator(at), self.refine_angle),
-            Metric::of_gradient(&turn, self.refine_angle),
-            Metric::of_gradient(&gradient(&context.cloth.v), self.refine_velocity),
-            squeeze.positive_part() * (1.0 / self.refine_compression.powi(2)),
-            context.obstacle.map_or(Metric::ZERO, |obstacle| obstacle[at.index()]),
+            shape * over_square(self.refine_angle),
+            squared_gradient(context.normals()) * over_square(self.refine_angle),
+            squared_gradient(&context.cloth.v) * over_square(self.refine_velocity),
+            squeeze * over_square(self.refine_compression),
+            context.obstacle.map_or(Metric::ZERO, |obstacle| obstacle[t]),
         ];
         // Clamped one by one: two nearly parallel tensors of rank 1 would add up in the maximum,
-        // and the result is clamped to the same bounds anyway.
-        let clamp = |m: Metric| m.clamp(self.size_min, self.size_max, self.aspect_min);
-        let coarsest = Metric::uniform(self.size_max);
-        let mut wanted = coarsest;
+        // and the result is clamped to the same bounds anyway, which also takes the positive part.
+        let (coarsest, finest) = (over_square(self.size_max), over_square(self.size_min));
+        let clamp = |m: Metric| m.clamp_eigenvalues(coarsest, finest, self.aspect_min.powi(2));
+        let mut wanted = Metric::uniform(self.size_max);
         for criterion in criteria {
-            let is_below = criterion.trace() <= 0.5 * coarsest.trace();
-            // Written so that what is not a number is passed on.
+            // Most are below the coarsest in every direction; what is not a number is not.
+            let is_below = criterion.bound() <= coarsest;
             if !is_below {
                 wanted = wanted.max(clamp(criterion));
             }

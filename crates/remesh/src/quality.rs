@@ -1,8 +1,8 @@
 //! How good a mesh is: aspect of its triangles, size of its edges.
 
-use crate::corners::CornerMetrics;
+use crate::corners::NOT_HERE;
 use mesh_core::geometry::aspect;
-use mesh_core::{ClothState, HalfEdge};
+use mesh_core::{HalfEdge, Mesh};
 
 /// Squared sizes above this make an edge invalid: rounding alone never splits one.
 pub(crate) const LARGEST_SIZE_SQUARED: f64 = 1.0 + 1e-9;
@@ -35,14 +35,14 @@ pub struct MeshQuality {
 }
 
 impl MeshQuality {
-    /// Measures the mesh; `locked` tells edges that count only in the totals.
+    /// Measures the mesh with the squared sizes of its edges; `locked` tells edges that count only
+    /// in the totals.
     pub(crate) fn measure(
-        cloth: &ClothState,
-        metrics: &CornerMetrics,
+        mesh: &Mesh,
+        edge_sizes: &[[f64; 3]],
         aspect_bound: f64,
         locked: impl Fn(HalfEdge) -> bool,
     ) -> MeshQuality {
-        let mesh = &cloth.mesh;
         let (mut aspect_min, mut aspect_sum, mut n_below_aspect) = (f64::INFINITY, 0.0, 0);
         for [a, b, c] in mesh.material() {
             let aspect = aspect(*a, *b, *c);
@@ -50,17 +50,19 @@ impl MeshQuality {
             aspect_sum += aspect;
             n_below_aspect += usize::from(aspect < aspect_bound);
         }
+        let ends = SIZE_BINS.map(|end| end * end * LARGEST_SIZE_SQUARED);
         let mut sizes = [0; SIZE_BINS.len() + 1];
         let (mut n_edges, mut n_invalid, mut largest) = (0, 0, 0.0f64);
-        for h in mesh.edges() {
-            n_edges += 1;
-            if locked(h) {
-                continue;
+        for (t, three) in edge_sizes.iter().enumerate() {
+            for (k, &size_squared) in three.iter().enumerate().filter(|(_, s)| **s != NOT_HERE) {
+                n_edges += 1;
+                if locked(HalfEdge((3 * t + k) as u32)) {
+                    continue;
+                }
+                largest = largest.max(size_squared);
+                n_invalid += usize::from(size_squared > LARGEST_SIZE_SQUARED);
+                sizes[ends.partition_point(|end| size_squared > *end)] += 1;
             }
-            let size_squared = metrics.size_squared(mesh, h);
-            largest = largest.max(size_squared);
-            n_invalid += usize::from(size_squared > LARGEST_SIZE_SQUARED);
-            sizes[SIZE_BINS.partition_point(|end| size_squared > end * end)] += 1;
         }
         MeshQuality {
             n_vertices: mesh.n_vertices(),

@@ -6,7 +6,8 @@ use crate::metric::Metric;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RemeshSettings<'a> {
     /// Edits do not take a triangle's [aspect](mesh_core::geometry::aspect) below this, and metrics
-    /// are made at most as anisotropic: sizes differ by at most 1 / `aspect_min` (no unit).
+    /// are made at most as anisotropic: their two sizes differ by a factor of at most 1 /
+    /// `aspect_min`. From 0 to 1; above 1/2 hardly any collapse is possible (no unit).
     pub aspect_min: f64,
     /// A collapse must leave all its edges shorter than 1 − `hysteresis`, so that they are not
     /// split again at once (no unit).
@@ -74,9 +75,8 @@ impl RemeshSettings<'_> {
     /// [`RemeshError::Setting`] names the first value out of range.
     pub fn check(&self) -> Result<(), RemeshError> {
         let fail = |name, value, range| Err(RemeshError::Setting { name, value, range });
-        if !(0.0..=0.5).contains(&self.aspect_min) {
-            // An edit that meets a bound near 1 hardly exists: equilateral triangles do not nest.
-            return fail("aspect_min", self.aspect_min, "from 0 to 0.5");
+        if !(0.0..=1.0).contains(&self.aspect_min) {
+            return fail("aspect_min", self.aspect_min, "from 0 to 1");
         }
         if !(0.0..1.0).contains(&self.hysteresis) {
             return fail("hysteresis", self.hysteresis, "from 0 to below 1");

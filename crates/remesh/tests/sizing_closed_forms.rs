@@ -63,7 +63,7 @@ fn a_cylinder_is_refined_along_its_curve_only() {
             let all = metrics(&cloth, &sizing);
             // The turn from one flat strip to the next over its width.
             let curvature = 20.0 * 2.0 * (0.5 / 20.0 / radius).asin();
-            assert_close(curvature, 1.0 / radius, 2e-3);
+            assert_close(curvature, 1.0 / radius, 3e-3);
             for t in inner(&cloth) {
                 let (lambda, [across, _]) = all[t.index()].eigen();
                 assert_close(lambda[0], (curvature / 0.3).powi(2), 1e-9);

@@ -49,8 +49,12 @@ impl TimeIntegrator for Sdirk2 {
         };
         let v_1 = velocity(&x_1, &cloth.x);
         let base: Vec<World3> = cloth.x.iter().zip(&v_1).map(|(x, v)| x + v * h_rest).collect();
-        let free: Vec<World3> =
-            cloth.v.iter().zip(&v_1).map(|(v_0, v_1)| v_0 + (v_1 - v_0) * (h_rest / h_stage)).collect();
+        let free: Vec<World3> = cloth
+            .v
+            .iter()
+            .zip(&v_1)
+            .map(|(v_0, v_1)| v_0 + (v_1 - v_0) * (h_rest / h_stage))
+            .collect();
         let held = constraints(time + h);
         let fixed: Vec<usize> = held.fixed.iter().map(|&(i, _)| i as usize).collect();
         let start = StageStart {

@@ -50,7 +50,9 @@ impl MeasuredMembrane {
             let [a, c, s] = [2.0 * c11, 2.0 * c22, c33].map(|k| (k * scale).max(0.0));
             let limit = 0.99 * (a * c).sqrt();
             let b = (2.0 * c12 * scale).clamp(-limit, limit);
-            if a != 2.0 * c11 * scale || c != 2.0 * c22 * scale || s != c33 * scale
+            if a != 2.0 * c11 * scale
+                || c != 2.0 * c22 * scale
+                || s != c33 * scale
                 || b != 2.0 * c12 * scale
             {
                 repaired += 1;
@@ -143,10 +145,8 @@ impl Law for MeasuredMembrane {
 
         let outer = |u: &Vector3<f64>, v: &Vector3<f64>| u * v.transpose() + v * u.transpose();
         let grad_excess = s_excess + grad_c * q_c;
-        let hess_excess = k_excess
-            + outer(&grad_c, &s_c)
-            + grad_c * grad_c.transpose() * q_cc
-            + hess_c * q_c;
+        let hess_excess =
+            k_excess + outer(&grad_c, &s_c) + grad_c * grad_c.transpose() * q_cc + hess_c * q_c;
         Response {
             energy: q_0 + ramp * excess,
             stress: s_0 + grad_excess * ramp + grad_e * (d_ramp * excess),

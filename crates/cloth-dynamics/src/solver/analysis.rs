@@ -185,7 +185,8 @@ impl PermutedLower {
         let mut rows = Vec::with_capacity(3 * (self.columns.len() + 2 * n));
         starts.push(0);
         for k in 0..n as u32 {
-            let range = self.row_starts[k as usize] as usize..self.row_starts[k as usize + 1] as usize;
+            let range =
+                self.row_starts[k as usize] as usize..self.row_starts[k as usize + 1] as usize;
             for c in 0..3 {
                 rows.extend(self.columns[range.clone()].iter().map(|&j| 3 * j));
                 if c > 0 {
@@ -213,12 +214,8 @@ fn symbolic_factor(
     let stack = MemStack::new(&mut memory);
     let mut tree = vec![0i32; 3 * n];
     let mut counts = vec![0u32; 3 * n];
-    let tree = simplicial::prefactorize_symbolic_cholesky(
-        &mut tree,
-        &mut counts,
-        upper.as_ref(),
-        stack,
-    );
+    let tree =
+        simplicial::prefactorize_symbolic_cholesky(&mut tree, &mut counts, upper.as_ref(), stack);
     supernodal::factorize_supernodal_symbolic_cholesky(
         upper.as_ref(),
         tree,

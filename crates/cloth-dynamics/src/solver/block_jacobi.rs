@@ -8,7 +8,9 @@ use nalgebra::{Matrix3, Vector3};
 use super::conjugate_gradient::{self, End, Outcome, Preconditioner, Start, Vectors, step};
 use super::matrix::BlockMatrix;
 use super::sums::CHUNK;
-use super::{LinearError, LinearReport, LinearSettings, LinearSolver, Method, check, no_convergence};
+use super::{
+    LinearError, LinearReport, LinearSettings, LinearSolver, Method, check, no_convergence,
+};
 
 /// Block-Jacobi conjugate gradients, as a solver.
 #[derive(Clone, Debug)]
@@ -62,6 +64,15 @@ impl LinearSolver for BlockJacobiCg {
         } else {
             Err(no_convergence(matrix, &outcome, self.settings.tolerance))
         }
+    }
+
+    fn solve_again(
+        &mut self,
+        matrix: &BlockMatrix,
+        rhs: &[Vector3<f64>],
+        x: &mut [Vector3<f64>],
+    ) -> Result<LinearReport, LinearError> {
+        self.solve(matrix, rhs, x)
     }
 
     fn reset(&mut self) {}

@@ -41,6 +41,18 @@ impl LinearSolver for SparseCholesky {
         }
     }
 
+    fn solve_again(
+        &mut self,
+        matrix: &BlockMatrix,
+        rhs: &[Vector3<f64>],
+        x: &mut [Vector3<f64>],
+    ) -> Result<LinearReport, LinearError> {
+        match check(matrix, rhs, x)? {
+            Some(report) => Ok(report),
+            None => self.kept.solve_again(matrix, rhs, x),
+        }
+    }
+
     fn reset(&mut self) {
         *self = Self::new(*self.kept.settings());
     }
@@ -48,6 +60,8 @@ impl LinearSolver for SparseCholesky {
 
 /// Iterations expected of a stale factor that has not been tried yet.
 const FIRST_GUESS: f64 = 4.0;
+/// The most solves in a row that do not try a stale factor.
+const LONGEST_BAR: usize = 31;
 
 /// Keeps the factor of an earlier matrix as the preconditioner of conjugate gradients.
 ///
@@ -57,9 +71,12 @@ const FIRST_GUESS: f64 = 4.0;
 /// - a solve has used up as many iterations as a factorisation costs, or
 /// - the last solve cost more than the mean over the life of the factor, its own cost included:
 ///   from there on the mean would rise. (This is the rule for replacing any machine that wears.)
+///
+/// Where factors turn out useless for the very next matrix, every matrix is factored for a while.
 pub struct StaleFactorCg {
     kept: KeptFactor,
     life: Life,
+    experience: Experience,
 }
 
 /// What has been paid for the factor in use.
@@ -70,18 +87,44 @@ struct Life {
     solves: usize,
     /// The factor has served its time.
     worn: bool,
-    /// Iterations of the last solve with a stale factor, this one or the one before.
+}
+
+/// What earlier factors have taught.
+#[derive(Clone, Copy, Debug, Default)]
+struct Experience {
+    /// Iterations of the last solve with a stale factor.
     last_iterations: Option<usize>,
+    /// How many solves to come must not try a stale factor.
+    barred: usize,
+    /// How many the last bar was for; zero after a success.
+    last_bar: usize,
+}
+
+impl Experience {
+    /// A factor that was no use for the very next matrix: the more often, the longer the bar.
+    fn useless(&mut self) {
+        self.last_bar = (2 * self.last_bar + 1).min(LONGEST_BAR);
+        self.barred = self.last_bar;
+    }
 }
 
 impl StaleFactorCg {
     /// A solver with these settings.
     pub fn new(settings: LinearSettings) -> Self {
-        Self { kept: KeptFactor::new(settings), life: Life::default() }
+        Self {
+            kept: KeptFactor::new(settings),
+            life: Life::default(),
+            experience: Experience::default(),
+        }
     }
 
     pub(super) fn settings(&self) -> &LinearSettings {
         self.kept.settings()
+    }
+
+    /// Whether there is a factor worth trying.
+    fn is_useful(&self, matrix: &BlockMatrix) -> bool {
+        self.kept.has_factor(matrix.pattern()) && !self.life.worn && self.experience.barred == 0
     }
 
     /// Counted size of the factor for matrices of this pattern.
@@ -99,8 +142,8 @@ impl StaleFactorCg {
         let pattern = matrix.pattern();
         let size = self.size(matrix);
         let iteration = size.iteration(pattern, self.kept.is_single());
-        let stale = self.life.last_iterations.map_or(FIRST_GUESS, |n| n as f64) * iteration;
-        if self.kept.has_factor(pattern) && !self.life.worn {
+        let stale = self.experience.last_iterations.map_or(FIRST_GUESS, |n| n as f64) * iteration;
+        if self.is_useful(matrix) {
             return stale;
         }
         let single = self.kept.wants_single();
@@ -109,8 +152,9 @@ impl StaleFactorCg {
         if !self.kept.is_analysed(pattern) {
             fresh += cost::analysis(pattern);
         }
+        let later = if self.experience.barred > 0 { fresh } else { stale.min(fresh) };
         let life = life.max(1) as f64;
-        (fresh + (life - 1.0) * stale.min(fresh)) / life
+        (fresh + (life - 1.0) * later) / life
     }
 
     /// [`LinearSolver::solve`] without the checks.
@@ -122,29 +166,38 @@ impl StaleFactorCg {
     ) -> Result<LinearReport, LinearError> {
         let pattern = matrix.pattern();
         let mut abandoned = 0;
-        if self.kept.has_factor(pattern) && !self.life.worn {
+        if self.is_useful(matrix) {
             let size = self.size(matrix);
             let iteration = size.iteration(pattern, self.kept.is_single());
             let budget = (size.factorize(self.kept.wants_single()) / iteration).ceil() as usize + 1;
             if let Some(outcome) = self.kept.solve_stale(matrix, rhs, x, budget) {
-                self.life.last_iterations = Some(outcome.iterations);
+                self.experience.last_iterations = Some(outcome.iterations);
                 if matches!(outcome.end, End::Converged | End::Rounding) {
+                    self.experience.last_bar = 0;
                     self.pay(outcome.iterations as f64 * iteration);
                     return Ok(LinearReport::iterative(Method::StaleFactorCg, &outcome));
                 }
                 abandoned = outcome.iterations;
+                if self.life.solves == 1 {
+                    self.experience.useless();
+                }
             }
+        } else {
+            self.experience.barred = self.experience.barred.saturating_sub(1);
         }
-        let report = self.kept.solve_fresh(matrix, rhs, x);
+        let report = self.kept.solve_fresh(matrix, rhs, x)?;
+        self.begin_life(matrix, &report);
+        Ok(LinearReport { iterations: report.iterations + abandoned, ..report })
+    }
+
+    /// Opens the books for a new factor.
+    fn begin_life(&mut self, matrix: &BlockMatrix, report: &LinearReport) {
         let size = self.size(matrix);
         let single = self.kept.is_single();
-        let last_iterations = self.life.last_iterations;
-        self.life = Life { last_iterations, ..Life::default() };
-        let report = report?;
         let iterations = report.iterations as f64 + 1.0;
-        self.pay(size.factorize(single) + iterations * size.iteration(pattern, single));
+        self.life = Life::default();
+        self.pay(size.factorize(single) + iterations * size.iteration(matrix.pattern(), single));
         self.life.worn = false;
-        Ok(LinearReport { iterations: report.iterations + abandoned, ..report })
     }
 
     /// Books the cost of a solve, and finds out whether the factor is worn.
@@ -166,6 +219,22 @@ impl LinearSolver for StaleFactorCg {
             Some(report) => Ok(report),
             None => self.solve_checked(matrix, rhs, x),
         }
+    }
+
+    fn solve_again(
+        &mut self,
+        matrix: &BlockMatrix,
+        rhs: &[Vector3<f64>],
+        x: &mut [Vector3<f64>],
+    ) -> Result<LinearReport, LinearError> {
+        if let Some(report) = check(matrix, rhs, x)? {
+            return Ok(report);
+        }
+        let report = self.kept.solve_again(matrix, rhs, x)?;
+        if report.refactored {
+            self.begin_life(matrix, &report);
+        }
+        Ok(report)
     }
 
     fn reset(&mut self) {

@@ -139,7 +139,7 @@ pub(super) fn solve(
         }
         Start::Given => bb,
     };
-    if start == Start::Given && !(rr < bb) {
+    if start == Start::Given && (rr >= bb || rr.is_nan()) {
         x.fill(Vector3::zeros());
         vectors.r.copy_from_slice(b);
         rr = bb;
@@ -152,7 +152,7 @@ pub(super) fn solve(
         if relative(rr) <= tolerance {
             break End::Converged;
         }
-        if !(rr < 0.25 * before) {
+        if rr >= 0.25 * before || rr.is_nan() {
             break if rounding_limited(a, b, x, rr) { End::Rounding } else { End::Stagnated };
         }
         if iterations >= max_iterations {
@@ -188,7 +188,7 @@ fn run(
     vectors.p.copy_from_slice(&vectors.z);
     for iteration in 0..max_iterations {
         let pq = a.multiply_dot(&vectors.p, &mut vectors.q);
-        if !(pq > 0.0) {
+        if pq <= 0.0 || pq.is_nan() {
             return (iteration, Some(pq));
         }
         let alpha = rz / pq;

@@ -2,21 +2,22 @@
 //! runs of one scene would differ.
 //!
 //! The unit is a nanosecond of one core of a 2023 server (AMD EPYC, 2.6 GHz); only the ratios
-//! matter. The constants were fitted to `examples/solver_costs.rs`, which prints both sides; they
-//! hold within a factor of 1.5 from 900 to 60,000 vertices.
+//! matter. The constants are fits to what `examples/solver_costs.rs` prints from 900 to 60,000
+//! vertices: within a fifth for factorisations, within a factor of two for the methods whose speed
+//! depends on whether the matrix fits into the cache.
 
 use super::analysis::Analysis;
 use super::pattern::BlockPattern;
 
 /// Product with the matrix, per stored block.
-const PRODUCT: f64 = 5.0;
+const PRODUCT: f64 = 4.0;
 /// The rest of a block-Jacobi iteration, per vertex.
-const VECTORS: f64 = 12.0;
+const VECTORS: f64 = 9.0;
 /// Factorisation: per operation, and per entry of the factor.
 const FACTOR_FLOP: f64 = 0.02;
 const FACTOR_ENTRY: f64 = 5.8;
 /// Solve with the factor, per entry.
-const SOLVE_ENTRY: f64 = 1.3;
+const SOLVE_ENTRY: f64 = 1.6;
 /// Analysis, per stored block.
 const ANALYSIS_BLOCK: f64 = 290.0;
 /// Single precision costs this share of double precision.
@@ -27,9 +28,9 @@ const SINGLE: f64 = 0.55;
 pub struct FactorSize {
     /// Vertices of the matrix.
     pub n_vertices: usize,
-    /// Floating-point operations of one factorisation.
+    /// Floating-point operations of one factorisation (1).
     pub flops: f64,
-    /// Scalars in the factor.
+    /// Scalars in the factor (1).
     pub entries: f64,
 }
 

@@ -69,21 +69,30 @@ pub(super) struct Factor<T> {
 impl<T: Real> Factor<T> {
     /// Makes room for factors of matrices of the analysed pattern; there are no numbers yet.
     pub(super) fn new(analysis: Analysis) -> Result<Self, FaerError> {
-        let symbolic = &analysis.symbolic;
-        let scratch = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, T>(
-            symbolic,
-            Par::Seq,
-            Default::default(),
-        )
-        .or(symbolic.solve_in_place_scratch::<T>(1, Par::Seq));
-        Ok(Self {
-            memory: MemBuffer::try_new(scratch).map_err(|_| FaerError::OutOfMemory)?,
-            matrix: zeros(analysis.scalar.row_idx().len())?,
-            values: zeros(analysis.factor_len())?,
-            y: zeros(symbolic.nrows())?,
+        let mut factor = Self {
+            memory: scratch::<T>(&analysis)?,
+            matrix: Vec::new(),
+            values: Vec::new(),
+            y: Vec::new(),
             scale: 1.0,
             analysis,
-        })
+        };
+        factor.make_room()?;
+        Ok(factor)
+    }
+
+    /// Turns to another pattern and forgets the numbers. The memory is kept where it suffices: to be
+    /// given fresh pages by the system costs as much as the analysis.
+    pub(super) fn turn_to(&mut self, analysis: Analysis) -> Result<(), FaerError> {
+        self.memory = scratch::<T>(&analysis)?;
+        self.analysis = analysis;
+        self.make_room()
+    }
+
+    fn make_room(&mut self) -> Result<(), FaerError> {
+        resize(&mut self.matrix, self.analysis.scalar.row_idx().len())?;
+        resize(&mut self.values, self.analysis.factor_len())?;
+        resize(&mut self.y, self.analysis.symbolic.nrows())
     }
 
     pub(super) fn analysis(&self) -> &Analysis {
@@ -151,18 +160,33 @@ impl<T: Real> Preconditioner for Factor<T> {
     }
 }
 
-/// A vector of zeros, or an error where there is no memory for it.
-fn zeros<T: Real>(len: usize) -> Result<Vec<T>, FaerError> {
-    let mut values = Vec::new();
-    values.try_reserve_exact(len).map_err(|_| FaerError::OutOfMemory)?;
+/// Working memory of factorisations and solves.
+fn scratch<T: Real>(analysis: &Analysis) -> Result<MemBuffer, FaerError> {
+    let factorize = supernodal::factorize_supernodal_numeric_llt_scratch::<u32, T>(
+        &analysis.symbolic,
+        Par::Seq,
+        Default::default(),
+    );
+    let solve = analysis.symbolic.solve_in_place_scratch::<T>(1, Par::Seq);
+    MemBuffer::try_new(factorize.or(solve)).map_err(|_| FaerError::OutOfMemory)
+}
+
+/// Gives `values` this length, whatever they are, or an error where there is no memory for it.
+fn resize<T: Real>(values: &mut Vec<T>, len: usize) -> Result<(), FaerError> {
+    if values.capacity() < len {
+        *values = Vec::new();
+        // Meshes often grow: an eighth more spares the next allocations.
+        values.try_reserve_exact(len + len / 8).map_err(|_| FaerError::OutOfMemory)?;
+    }
     values.resize(len, T::from_f64(0.0));
-    Ok(values)
+    Ok(())
 }
 
 /// The power of two just below a positive normal number; one for anything else. Multiplying by it
 /// or its inverse rounds nothing.
 fn power_of_two(value: f64) -> f64 {
-    if value.is_normal() && value > 0.0 && value < f64::MAX.sqrt() && value > 1.0 / f64::MAX.sqrt() {
+    if value.is_normal() && value > 0.0 && value < f64::MAX.sqrt() && value > 1.0 / f64::MAX.sqrt()
+    {
         f64::from_bits(value.to_bits() & f64::INFINITY.to_bits())
     } else {
         1.0

@@ -124,23 +124,37 @@ impl KeptFactor {
     fn take(&mut self, pattern: &Arc<BlockPattern>) -> Result<(Numbers, bool), FaerError> {
         self.valid = false;
         let single = self.wants_single();
-        let (analysis, analysed) = match self.numbers.take() {
-            Some(numbers) if numbers.analysis().is_of(pattern) => match numbers {
-                Numbers::Single(_) if single => return Ok((numbers, false)),
-                Numbers::Double(_) if !single => return Ok((numbers, false)),
-                Numbers::Single(factor) => (factor.into_analysis(), false),
-                Numbers::Double(factor) => (factor.into_analysis(), false),
-            },
-            // The old one goes before the new one is made: together they may not fit.
-            old => {
-                drop(old);
-                (Analysis::new(pattern.clone())?, true)
+        let old = self.numbers.take();
+        let analysed = !old.as_ref().is_some_and(|numbers| numbers.analysis().is_of(pattern));
+        let numbers = match old {
+            Some(Numbers::Single(mut factor)) if single => {
+                if analysed {
+                    factor.turn_to(Analysis::new(pattern.clone())?)?;
+                }
+                Numbers::Single(factor)
             }
-        };
-        let numbers = if single {
-            Numbers::Single(Factor::new(analysis)?)
-        } else {
-            Numbers::Double(Factor::new(analysis)?)
+            Some(Numbers::Double(mut factor)) if !single => {
+                if analysed {
+                    factor.turn_to(Analysis::new(pattern.clone())?)?;
+                }
+                Numbers::Double(factor)
+            }
+            other => {
+                let analysis = match other {
+                    Some(Numbers::Single(factor)) if !analysed => factor.into_analysis(),
+                    Some(Numbers::Double(factor)) if !analysed => factor.into_analysis(),
+                    // Gone before the new one is made: together they may not fit.
+                    stale => {
+                        drop(stale);
+                        Analysis::new(pattern.clone())?
+                    }
+                };
+                if single {
+                    Numbers::Single(Factor::new(analysis)?)
+                } else {
+                    Numbers::Double(Factor::new(analysis)?)
+                }
+            }
         };
         Ok((numbers, analysed))
     }
@@ -156,13 +170,29 @@ impl KeptFactor {
         let tolerance = self.settings.tolerance;
         let (start, vectors) = (Start::Given, &mut self.vectors);
         Some(match self.numbers.as_mut()? {
-            Numbers::Single(factor) => conjugate_gradient::solve(
-                matrix, rhs, x, factor, start, tolerance, budget, vectors,
-            ),
-            Numbers::Double(factor) => conjugate_gradient::solve(
-                matrix, rhs, x, factor, start, tolerance, budget, vectors,
-            ),
+            Numbers::Single(factor) => {
+                conjugate_gradient::solve(matrix, rhs, x, factor, start, tolerance, budget, vectors)
+            }
+            Numbers::Double(factor) => {
+                conjugate_gradient::solve(matrix, rhs, x, factor, start, tolerance, budget, vectors)
+            }
         })
+    }
+
+    /// Solves with the factor of this very matrix, or factors it if there is none.
+    pub(super) fn solve_again(
+        &mut self,
+        matrix: &BlockMatrix,
+        rhs: &[Vector3<f64>],
+        x: &mut [Vector3<f64>],
+    ) -> Result<LinearReport, LinearError> {
+        if self.has_factor(matrix.pattern())
+            && let Some(outcome) = self.solve_stale(matrix, rhs, x, REFINE_DOUBLE)
+            && matches!(outcome.end, End::Converged | End::Rounding)
+        {
+            return Ok(LinearReport::iterative(Method::StaleFactorCg, &outcome));
+        }
+        self.solve_fresh(matrix, rhs, x)
     }
 
     /// Factors `matrix` and solves: in single precision if it is allowed and good enough, else in

@@ -63,7 +63,8 @@ impl BlockMatrix {
         self.blocks.fill(Matrix3::zeros());
     }
 
-    /// Adds `block` to `A_ij`, where `slot` is the slot of `(i, j)`, `i ≥ j`.
+    /// Adds `block` to `A_ij`, where `slot` is the slot of `(i, j)`, `i ≥ j` (see
+    /// [`BlockPattern::slot`]).
     pub fn add(&mut self, slot: usize, block: &Matrix3<f64>) {
         self.blocks[slot] += block;
     }
@@ -83,6 +84,9 @@ impl BlockMatrix {
     /// Each stored block is read once and used twice, for `A_ij` and for its transpose. Reading the
     /// whole matrix row by row instead takes 1.2 to 1.9 times as long: the blocks come from memory,
     /// and memory is the limit.
+    ///
+    /// # Panics
+    /// If `x` or `y` does not have one entry per vertex.
     pub fn multiply(&self, x: &[Vector3<f64>], y: &mut [Vector3<f64>]) {
         self.multiply_dot(x, y);
     }
@@ -133,6 +137,9 @@ impl BlockMatrix {
     /// fixed vertices, and at the others that of the system without them.
     ///
     /// The pattern stays, so pinning and letting go cost no new analysis.
+    ///
+    /// # Panics
+    /// If `fixed` does not have one entry per vertex.
     pub fn eliminate(&mut self, fixed: &[bool]) {
         assert!(fixed.len() == self.n_vertices(), "the mask must have one entry per vertex");
         let starts = self.pattern.column_starts();
@@ -167,7 +174,8 @@ impl BlockMatrix {
             }
         }
         // f64::max would pass over a NaN.
-        let largest = |s: &Vector3<f64>| if s.iter().all(|v| v.is_finite()) { s.max() } else { f64::NAN };
+        let largest =
+            |s: &Vector3<f64>| if s.iter().all(|v| v.is_finite()) { s.max() } else { f64::NAN };
         sums.iter().map(largest).collect()
     }
 }

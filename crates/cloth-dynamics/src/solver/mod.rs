@@ -21,6 +21,8 @@
 //! of operations and iterations, never on a clock.
 
 mod analysis;
+#[cfg(test)]
+mod assembly_tests;
 mod auto;
 mod block_jacobi;
 mod cholesky;
@@ -52,6 +54,15 @@ pub trait LinearSolver: Send {
     /// On entry `x` is a guess (zero if there is none); on success it is the solution, and on
     /// [`LinearError::NoConvergence`] the last iterate. All slices have one entry per vertex.
     fn solve(
+        &mut self,
+        matrix: &BlockMatrix,
+        rhs: &[Vector3<f64>],
+        x: &mut [Vector3<f64>],
+    ) -> Result<LinearReport, LinearError>;
+
+    /// Solves once more with the very matrix of the last successful call: a factor is used again as
+    /// it is, without a test whether that pays.
+    fn solve_again(
         &mut self,
         matrix: &BlockMatrix,
         rhs: &[Vector3<f64>],
@@ -181,7 +192,7 @@ pub struct LinearReport {
     /// whose solution needed no improvement.
     pub iterations: usize,
     /// `‖b − A x‖ / ‖b‖`, computed from the solution (of the shifted system, if there is a shift;
-    /// dimensionless).
+    /// dimensionless) (1).
     pub relative_residual: f64,
     /// The tolerance is below what double precision can reach for this matrix: the residual is
     /// within a few roundings of `‖A‖ ‖x‖ + ‖b‖`.
@@ -313,7 +324,9 @@ fn no_convergence(matrix: &BlockMatrix, outcome: &Outcome, tolerance: f64) -> Li
     }
     let Outcome { iterations, relative_residual, .. } = *outcome;
     match outcome.end {
-        End::Curvature(curvature) => LinearError::NegativeCurvature { iteration: iterations, curvature },
+        End::Curvature(curvature) => {
+            LinearError::NegativeCurvature { iteration: iterations, curvature }
+        }
         _ => LinearError::NoConvergence { iterations, relative_residual, tolerance },
     }
 }

@@ -157,7 +157,8 @@ fn starts(n: usize, keys: impl Iterator<Item = u32>) -> Vec<u32> {
     start
 }
 
-/// Which blocks of the lower triangle exist (see the [module](self)). Immutable: share it by
+/// Which blocks of the lower triangle exist: column `j` lists its rows `i ≥ j`, sorted, and the place
+/// in that list is the block's slot. Immutable: share it by
 /// [`Arc`](std::sync::Arc), and solvers keep their analysis of it for as long as it is the same.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BlockPattern {

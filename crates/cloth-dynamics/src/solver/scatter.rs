@@ -71,6 +71,11 @@ impl<const N: usize> StencilSlots<N> {
     /// Adds the symmetric element matrix of stencil `stencil`: `blocks[a][b]` belongs to the corners
     /// `a`, `b`, and `blocks[b][a]` must be its transpose (only `a ≥ b` is read). Blocks of absent
     /// corners are passed over.
+    ///
+    /// The matrix must have the pattern in which the slots were looked up.
+    ///
+    /// # Panics
+    /// If there is no stencil of that index.
     pub fn scatter(&self, stencil: usize, blocks: &[[Matrix3<f64>; N]; N], to: &mut BlockMatrix) {
         let entries = &self.entries[stencil * Self::PAIRS..][..Self::PAIRS];
         let mut k = 0;

@@ -64,7 +64,14 @@ impl Run {
         let step = Step { time: self.time, h };
         self.time += h;
         integrator
-            .advance(&mut self.cloth, &mut self.system, &mut self.solver, held, &self.settings, step)
+            .advance(
+                &mut self.cloth,
+                &mut self.system,
+                &mut self.solver,
+                held,
+                &self.settings,
+                step,
+            )
             .unwrap()
     }
 

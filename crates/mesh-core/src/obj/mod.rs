@@ -44,7 +44,7 @@ pub struct ObjMesh {
     /// Vertices of every triangle: indices into `positions`, so file index − 1.
     pub triangles: Vec<[u32; 3]>,
     /// Texture coordinates of every triangle's corners, if the faces have them (m where they are
-    /// used as material coordinates).
+    /// used as material coordinates) (m).
     pub texture: Option<Vec<[Material2; 3]>>,
     /// The face each triangle was cut from.
     face_of: Vec<u32>,

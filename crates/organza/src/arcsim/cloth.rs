@@ -88,7 +88,8 @@ fn rename_material(i: usize, at: &str, notes: &mut Notes) {
 
 /// Complains of the parts of a material that are not simulated.
 fn check_material(material: &ArcsimMaterial, at: &str, notes: &mut Notes) {
-    let is = |value: &Option<Value>| value.as_ref().is_some_and(|v| asks(v) && v.as_f64() != Some(0.0));
+    let is =
+        |value: &Option<Value>| value.as_ref().is_some_and(|v| asks(v) && v.as_f64() != Some(0.0));
     let parts = [
         ("yield_curv", &material.yield_curv, "plasticity"),
         ("weakening", &material.weakening, "plasticity"),

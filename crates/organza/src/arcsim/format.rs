@@ -3,9 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::scene::format::{
-    BendingModel, Camera, Integrator, LinearSolver, Newton, Recording,
-};
+use crate::scene::format::{BendingModel, Camera, Integrator, LinearSolver, Newton, Recording};
 
 /// A scene of ARCSim.
 #[derive(Debug, Clone, Serialize, Deserialize)]

@@ -22,9 +22,12 @@ pub(super) fn translate(
         let ours = format!("handles[{}]", translated.len());
         let theirs = format!("handles[{theirs}]");
         let Some(nodes) = nodes(handle, &theirs, notes) else { continue };
-        for (our_key, their_key) in
-            [("cloth", "cloth"), ("select", "nodes"), ("start_s", "start_time"), ("end_s", "end_time")]
-        {
+        for (our_key, their_key) in [
+            ("cloth", "cloth"),
+            ("select", "nodes"),
+            ("start_s", "start_time"),
+            ("end_s", "end_time"),
+        ] {
             notes.rename(&format!("{ours}.{our_key}"), &format!("{theirs}.{their_key}"));
         }
         notes.rename(&format!("{ours}.select.vertices"), &format!("{theirs}.nodes"));
@@ -91,7 +94,8 @@ fn motion(
     };
     let theirs = format!("motions[{index}]");
     let keyframes = keyframes.iter().enumerate().map(|(k, key)| {
-        let (our_key, their_key) = (format!("{ours}.motion.keyframes[{k}]"), format!("{theirs}[{k}]"));
+        let (our_key, their_key) =
+            (format!("{ours}.motion.keyframes[{k}]"), format!("{theirs}[{k}]"));
         if key.velocity.as_ref().is_some_and(crate::scene::unsupported::asks) {
             notes.unsupported(&format!("{their_key}.velocity"), "velocities of keyframes");
         }

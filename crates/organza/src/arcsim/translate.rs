@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::cloth;
 use super::format::{ArcsimFile, Magic};
 use super::handle;
-use crate::scene::format::{SceneFile, Wind};
+use crate::scene::format::{Integrator, Newton, SceneFile, Wind};
 use crate::scene::issue::IssueKind;
 use crate::scene::locate::Part;
 use crate::scene::path::ValuePath;
@@ -128,8 +128,9 @@ fn translate(arcsim: ArcsimFile, notes: &mut Notes) -> Option<SceneFile> {
         substeps: time.substeps,
         gravity: arcsim.gravity.unwrap_or_default(),
         wind: Some(wind),
-        integrator: extras.integrator.unwrap_or_default(),
-        newton: extras.newton.unwrap_or_default(),
+        // As ARCSim: implicit Euler, solved for what one sees rather than to the last digit.
+        integrator: extras.integrator.unwrap_or(Integrator::ImplicitEuler),
+        newton: extras.newton.unwrap_or(Newton { max_iterations: 4, tolerance: 0.1 }),
         linear_solver: extras.linear_solver.unwrap_or_default(),
         linear_tolerance: extras.linear_tolerance.unwrap_or(1e-8),
         cloths: cloths.into_iter().collect::<Option<_>>()?,
@@ -204,17 +205,17 @@ fn check_parts(arcsim: &ArcsimFile, notes: &mut Notes) {
     if notes.is_disabled("physics") {
         notes.unsupported("disable", "a scene without physics");
     }
-    for (key, value, what) in [
-        ("obstacles", &arcsim.obstacles, "obstacles"),
-        ("morphs", &arcsim.morphs, "morphs"),
-    ] {
+    for (key, value, what) in
+        [("obstacles", &arcsim.obstacles, "obstacles"), ("morphs", &arcsim.morphs, "morphs")]
+    {
         if value.as_ref().is_some_and(asks) {
             notes.unsupported(key, what);
         }
     }
     check_magic(&arcsim.magic, notes);
     if !(notes.is_disabled("collision") && notes.is_disabled("proximity")) {
-        let message = "ARCSim lets cloth touch itself; self-contact is not simulated in this version";
+        let message =
+            "ARCSim lets cloth touch itself; self-contact is not simulated in this version";
         notes.note(IssueKind::Notice, "", message);
     }
 }

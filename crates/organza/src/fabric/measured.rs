@@ -43,7 +43,7 @@ pub(crate) fn read_measured(name: &str, bytes: &[u8]) -> Result<MeasuredFabric, 
             top.key("bending").index(i).vector(row, limits::MAX_STIFFNESS, "N·m");
         }
     }
-    let issues: Vec<Issue> = complaints.into_vec().into_iter().map(|c| places.resolve(c)).collect();
+    let issues = places.resolve_some(complaints.into_vec().into_iter());
     match fabric {
         Some(fabric) if issues.is_empty() => Ok(fabric),
         _ => Err(issues),

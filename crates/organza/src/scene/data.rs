@@ -28,7 +28,7 @@ pub struct Scene {
     pub newton: Newton,
     /// The linear solver.
     pub linear_solver: LinearSolver,
-    /// Relative residual at which iterative linear solvers stop.
+    /// Relative residual at which iterative linear solvers stop (1).
     pub linear_tolerance: f64,
     /// The pieces of cloth, at least one.
     pub cloths: Vec<Cloth>,
@@ -74,7 +74,7 @@ pub struct Cloth {
     pub fabric: Fabric,
     /// Multipliers of the fabric, `thicken` included.
     pub multipliers: Multipliers,
-    /// Smallest and largest principal stretch, min < 1 < max.
+    /// Smallest and largest principal stretch, min < 1 < max (1).
     pub strain_limits: Option<[f64; 2]>,
     /// How bending is measured.
     pub bending: BendingModel,

@@ -5,6 +5,14 @@
 pub const MAX_TEXT_BYTES: u64 = 64 << 20;
 /// Size of a mesh file (bytes).
 pub const MAX_MESH_BYTES: u64 = 1 << 30;
+/// Cloths of a scene.
+pub const MAX_CLOTHS: usize = 10_000;
+/// Handles of a scene.
+pub const MAX_HANDLES: usize = 100_000;
+/// Complaints shown of one scene; a file that is no scene at all could have millions.
+pub const MAX_ISSUES: usize = 50;
+/// Characters shown of a message or a path.
+pub const MAX_SHOWN_CHARS: usize = 1000;
 /// Coordinates, lengths and offsets (m).
 pub const MAX_COORDINATE_M: f64 = 1e6;
 /// Speeds of cloth and wind (m/s).

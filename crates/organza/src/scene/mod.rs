@@ -45,6 +45,7 @@ use self::check::Complaints;
 use self::format::SceneFile;
 use self::locate::Part;
 use self::resolve::Context;
+use self::typed::Complaint;
 use crate::arcsim;
 
 /// How a scene is read.
@@ -122,9 +123,10 @@ pub fn parse(
         }
     };
     // Complaints so far name places of the file; from here on they name places of our format.
-    let unknown = complaints.iter().filter(|c| c.part == Part::Key);
+    let is_unknown_key = |c: &&Complaint| c.kind == IssueKind::Structure && c.part == Part::Key;
+    let unknown = complaints.iter().filter(is_unknown_key);
     let unknown: Vec<ValuePath> = unknown.map(|c| c.path.parent()).collect();
-    let mut issues: Vec<Issue> = complaints.into_iter().map(|c| places.resolve(c)).collect();
+    let mut issues: Vec<Issue> = places.resolve_some(complaints.into_iter());
     places.set_renames(renames.unwrap_or_default());
 
     let complaints = Complaints::default();
@@ -140,7 +142,7 @@ pub fn parse(
     let Context { foreign, sources, .. } = context;
     // An object with an unknown key may be wrong as a whole only because of that key.
     let complaints = complaints.into_vec().into_iter().filter(|c| !unknown.contains(&c.path));
-    issues.extend(complaints.map(|c| places.resolve(c)));
+    issues.extend(places.resolve_some(complaints));
     issues.extend(foreign);
     issues.sort_by_key(|issue| reading_order(issue, name, &options.sets));
 
@@ -172,10 +174,12 @@ fn apply_sets(value: &mut Value, sets: &[String]) -> Result<Vec<overrides::Overr
 fn reading_order(issue: &Issue, scene: &str, sets: &[String]) -> impl Ord + use<> {
     match &issue.origin {
         Origin::Set { argument } => {
-            (sets.iter().position(|set| set == argument), false, String::new(), None)
+            (sets.iter().position(|set| set == argument), false, String::new(), (false, None))
         }
         Origin::File { name, position } => {
-            (Some(sets.len()), name != scene, name.clone(), *position)
+            // Without a position it is about the file as a whole or about what was not shown.
+            let position = position.map_or((true, None), |position| (false, Some(position)));
+            (Some(sets.len()), name != scene, name.clone(), position)
         }
     }
 }

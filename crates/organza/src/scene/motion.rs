@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Transform {
-    /// Factor of enlargement.
+    /// Factor of enlargement (1).
     pub scale: f64,
     /// Rotation; absent means none.
     pub rotate: Option<AxisAngle>,
@@ -26,7 +26,7 @@ impl Default for Transform {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct AxisAngle {
-    /// Direction of the axis, of any length.
+    /// Direction of the axis, of any length (1).
     pub axis: [f64; 3],
     /// Angle, counter-clockwise as seen against the axis (degrees).
     pub degrees: f64,

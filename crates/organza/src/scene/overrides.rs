@@ -73,9 +73,9 @@ fn slot<'v>(scene: &'v mut Value, path: &ValuePath) -> Result<&'v mut Value, Str
                     .as_array_mut()
                     .ok_or_else(|| format!("{} is {kind}, not a list", here()))?;
                 let len = list.len();
-                value = list.get_mut(*index).ok_or_else(|| {
-                    format!("{} has {len} elements, no element {index}", here())
-                })?;
+                value = list
+                    .get_mut(*index)
+                    .ok_or_else(|| format!("{} has {len} elements, no element {index}", here()))?;
                 so_far = so_far.index(*index);
             }
         }

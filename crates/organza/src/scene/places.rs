@@ -2,6 +2,7 @@
 //! argument that wrote the value.
 
 use super::issue::{Issue, IssueKind, Origin};
+use super::limits;
 use super::locate::{Part, locate};
 use super::overrides::Override;
 use super::path::ValuePath;
@@ -44,6 +45,20 @@ impl Places {
         self.resolve(Complaint { kind, path, part: Part::Value, message: message.into() })
     }
 
+    /// The issues of complaints, as many as are shown: looking up each place reads the text.
+    pub(crate) fn resolve_some(&self, complaints: impl Iterator<Item = Complaint>) -> Vec<Issue> {
+        let mut complaints = complaints;
+        let shown = complaints.by_ref().take(limits::MAX_ISSUES);
+        let mut issues: Vec<Issue> = shown.map(|complaint| self.resolve(complaint)).collect();
+        let more = complaints.count();
+        if more > 0 {
+            let origin = Origin::File { name: self.name.clone(), position: None };
+            let message = format!("and {more} more complaints");
+            issues.push(Issue { kind: IssueKind::Value, origin, path: String::new(), message });
+        }
+        issues
+    }
+
     pub(crate) fn resolve(&self, complaint: Complaint) -> Issue {
         let path = self.renamed(complaint.path);
         // The last argument that touches the value wrote it.
@@ -55,12 +70,8 @@ impl Places {
                 position: Some(locate(&self.text, &path, complaint.part)),
             },
         };
-        Issue {
-            kind: complaint.kind,
-            origin,
-            path: path.to_string(),
-            message: complaint.message,
-        }
+        let (path, message) = (clipped(path.to_string()), clipped(complaint.message));
+        Issue { kind: complaint.kind, origin, path, message }
     }
 
     fn renamed(&self, path: ValuePath) -> ValuePath {
@@ -76,5 +87,13 @@ impl Places {
             }
             None => path,
         }
+    }
+}
+
+/// Keys and texts of a scene can be of any length.
+fn clipped(text: String) -> String {
+    match text.char_indices().nth(limits::MAX_SHOWN_CHARS) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text,
     }
 }

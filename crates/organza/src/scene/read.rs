@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::issue::{Issue, IssueKind, Origin};
-use super::limits::MAX_TEXT_BYTES;
+use super::limits::{MAX_ISSUES, MAX_TEXT_BYTES};
 use super::locate::{Part, position_of};
 use super::places::Places;
 use super::text::{TextProblem, read_value};
@@ -41,6 +41,7 @@ pub(crate) fn read_document(name: &str, bytes: &[u8]) -> Result<Document, Vec<Is
         Ok(value) => Ok(Document { value, places }),
         Err(problems) => Err(problems
             .into_iter()
+            .take(MAX_ISSUES)
             .map(|problem| match problem {
                 TextProblem::Syntax { position, message } => syntax(Some(position), message),
                 TextProblem::Value { path, message } => places.resolve(Complaint {

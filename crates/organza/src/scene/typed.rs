@@ -5,6 +5,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::issue::IssueKind;
+use super::limits;
 use super::locate::Part;
 use super::path::{Segment, ValuePath};
 use super::strict::Strict;
@@ -27,6 +28,7 @@ pub(crate) fn read<T>(value: &mut Value, complaints: &mut Vec<Complaint>) -> Opt
 where
     T: for<'de> Deserialize<'de>,
 {
+    let before = complaints.len();
     // Values taken out for their type, and keys that were probably meant by unknown ones: both
     // would be missed in what follows, and have been complained of.
     let (mut removed, mut meant) = (Vec::<ValuePath>::new(), Vec::<ValuePath>::new());
@@ -35,6 +37,10 @@ where
             Ok(read) => return removed.is_empty().then_some(read),
             Err(error) => error,
         };
+        // Each complaint takes another reading; what has so many is no scene.
+        if complaints.len() - before >= limits::MAX_ISSUES {
+            return None;
+        }
         let path = ValuePath::from(error.path());
         let message = error.inner().to_string();
         let mut complain = |path: &ValuePath, part, message| {
@@ -117,18 +123,25 @@ pub(crate) fn suggestion<S: AsRef<str>>(word: &str, known: &[S]) -> String {
 }
 
 fn nearest<'k>(word: &str, known: &[&'k str]) -> Option<&'k str> {
+    // Comparing takes time and memory with the product of the lengths.
+    if word.len() > 100 {
+        return None;
+    }
     // Names carry their unit at the end: `density` should find `density_kg_per_m2`.
     let named = |candidate: &&&str| word.len() > 2 && candidate.starts_with(word);
     if let Some(candidate) = known.iter().find(named) {
         return Some(candidate);
     }
     let score = |candidate: &str| strsim::normalized_damerau_levenshtein(word, candidate);
-    let best = known.iter().map(|candidate| (score(candidate), *candidate));
-    // Of equal scores the first wins, so that the answer does not depend on float order.
-    let best = best.fold((0.0, None), |best, (score, candidate)| {
-        if score > best.0 { (score, Some(candidate)) } else { best }
-    });
-    best.1.filter(|_| best.0 >= 0.6)
+    let scored = known.iter().map(|candidate| (score(candidate), *candidate));
+    // Of equal scores the first wins.
+    let mut nearest = (0.0, None);
+    for (score, candidate) in scored {
+        if score > nearest.0 {
+            nearest = (score, Some(candidate));
+        }
+    }
+    nearest.1.filter(|_| nearest.0 >= 0.6)
 }
 
 /// Rewords serde's messages.
@@ -174,7 +187,9 @@ fn expected_words(expected: &str) -> String {
         "a string" | "a borrowed string" => "a text",
         "a sequence" => "a list",
         "a boolean" => "true or false",
-        "string or map" | "map with a single key" => "the name of a choice, or an object with one key",
+        "string or map" | "map with a single key" => {
+            "the name of a choice, or an object with one key"
+        }
         "unit" => "a name alone, without a value",
         "newtype variant" => "an object with one key",
         _ if expected.starts_with("struct ") => "an object",

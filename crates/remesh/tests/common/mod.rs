@@ -2,8 +2,10 @@
 #![allow(dead_code, unreachable_pub)]
 
 use mesh_core::generate::{self, Diagonal};
-use mesh_core::{ClothState, Material2, Mesh, World3};
-use remesh::{MeshQuality, Metric, SizingContext, SizingField};
+use mesh_core::{ClothState, HalfEdge, Material2, Mesh, World3};
+use remesh::{
+    CornerMetrics, MeshQuality, Metric, RemeshReport, RemeshSettings, SizingContext, SizingField,
+};
 
 /// A fixed 64-bit generator (Knuth's MMIX constants): the same numbers on every machine.
 pub struct Numbers(pub u64);
@@ -198,12 +200,40 @@ impl Conserved {
     }
 }
 
+/// Remeshes with the usual settings and checks what must be conserved.
+pub fn run<S: SizingField + ?Sized>(cloth: &mut ClothState, field: &S) -> RemeshReport {
+    let conserved = Conserved::of(cloth);
+    let report = remesh::remesh(cloth, field, &RemeshSettings::default()).unwrap();
+    conserved.check(cloth);
+    report
+}
+
+/// The triangles of a panel as the lasting names of their corners.
+pub fn panel_by_names(cloth: &ClothState, panel: u32) -> Vec<[u64; 3]> {
+    let mesh = &cloth.mesh;
+    let mut rows: Vec<_> = (0..mesh.n_triangles())
+        .filter(|&t| mesh.panels()[t] == panel)
+        .map(|t| mesh.triangles()[t].map(|v| mesh.uids()[v as usize]))
+        .collect();
+    rows.sort_unstable();
+    rows
+}
+
 /// A sizing field from a function of the place in material space (m).
 pub struct At<F>(pub F);
 
 impl<F: Fn(Material2) -> Metric + Send + Sync> SizingField for At<F> {
     fn metric(&self, context: &SizingContext<'_>, at: mesh_core::TriangleId) -> Metric {
         self.0(context.centroid(at))
+    }
+}
+
+/// All corners around a vertex hold the same metric up to the next feature edge.
+pub fn check_sectors(mesh: &Mesh, metrics: &CornerMetrics) {
+    let of = |h: HalfEdge| metrics.at(h.triangle())[h.corner()];
+    for h in mesh.edges().filter(|&h| !mesh.is_feature(h)) {
+        let g = mesh.twin(h).unwrap();
+        assert_eq!((of(h), of(h.next())), (of(g.next()), of(g)));
     }
 }
 

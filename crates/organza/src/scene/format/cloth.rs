@@ -22,14 +22,14 @@ pub struct ClothFile {
     pub transform: Transform,
     /// What the cloth is made of.
     pub fabric: FabricChoice,
-    /// Layers of fabric: multiplies density, stretching and bending stiffness.
+    /// Layers of fabric: multiplies density, stretching and bending stiffness (1).
     #[serde(default = "one")]
     pub thicken: f64,
     /// Multiplies single properties of the fabric.
     #[serde(default)]
     pub multipliers: Multipliers,
     /// Smallest and largest principal stretch, below and above 1, such as `[0.95, 1.05]`; absent
-    /// means no limit.
+    /// means no limit (1).
     #[serde(default)]
     pub strain_limits: Option<[f64; 2]>,
     /// How bending is measured on the mesh.
@@ -78,11 +78,11 @@ pub enum FabricChoice {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Multipliers {
-    /// Multiplies the density.
+    /// Multiplies the density (1).
     pub density: f64,
-    /// Multiplies the stretching stiffness.
+    /// Multiplies the stretching stiffness (1).
     pub stretching: f64,
-    /// Multiplies the bending stiffness.
+    /// Multiplies the bending stiffness (1).
     pub bending: f64,
 }
 
@@ -141,11 +141,11 @@ pub struct Remeshing {
     /// Difference of velocity (m/s).
     #[serde(default)]
     pub refine_velocity: Option<f64>,
-    /// Smallest aspect ratio of triangles, from 0.001 to 0.5; an equilateral one has 1, a needle 0.
+    /// Smallest aspect ratio of triangles, from 0.001 to 0.5; an equilateral one has 1, a needle 0 (1).
     #[serde(default = "default_aspect_min")]
     pub aspect_min: f64,
     /// A collapse must leave all its edges this much shorter than allowed, as a fraction, so that
-    /// they are not split again at once.
+    /// they are not split again at once (1).
     #[serde(default = "default_hysteresis")]
     pub hysteresis: f64,
     /// The mesh grows no further than this.

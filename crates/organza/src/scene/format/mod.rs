@@ -51,7 +51,7 @@ pub struct SceneFile {
     /// The linear solver inside the nonlinear one.
     #[serde(default)]
     pub linear_solver: LinearSolver,
-    /// Relative residual at which iterative linear solvers stop.
+    /// Relative residual at which iterative linear solvers stop (1).
     #[serde(default = "default::linear_tolerance")]
     pub linear_tolerance: f64,
     /// The pieces of cloth.
@@ -91,7 +91,7 @@ pub struct Camera {
     pub position: [f64; 3],
     /// The point it looks at (m).
     pub target: [f64; 3],
-    /// The direction that is up in the picture; default is against gravity.
+    /// The direction that is up in the picture; default is against gravity (1).
     #[serde(default)]
     pub up: Option<[f64; 3]>,
     /// Opening angle from the lower to the upper edge (degrees).

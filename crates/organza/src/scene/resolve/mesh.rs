@@ -95,7 +95,9 @@ fn check_skirt(skirt: &Skirt, at: &At<'_>) {
     check_cells(skirt.cells, [1, 1], skirt.panels, &at.key("cells"));
     let around = u64::from(skirt.panels) * u64::from(skirt.cells[0]);
     if skirt.panels > 0 && skirt.cells[0] > 0 && around < 3 {
-        at.key("cells").index(0).complain(format!("{around} cells around in all, at least 3 needed"));
+        at.key("cells")
+            .index(0)
+            .complain(format!("{around} cells around in all, at least 3 needed"));
     }
     // Cloth that is shorter than the difference of the radii cannot reach from waist to hem.
     let spread = (skirt.hem_m - skirt.waist_m).abs() / std::f64::consts::TAU;

@@ -62,6 +62,15 @@ pub(super) fn resolve(
     if file.cloths.is_empty() {
         top.key("cloths").complain("a scene needs at least one cloth");
     }
+    for (key, n, limit) in [
+        ("cloths", file.cloths.len(), limits::MAX_CLOTHS),
+        ("handles", file.handles.len(), limits::MAX_HANDLES),
+    ] {
+        if n > limit {
+            top.key(key).complain(format!("has {n} elements, beyond the limit of {limit}"));
+            return None;
+        }
+    }
     let names = cloth::names(&file.cloths, &top.key("cloths"));
     let handles = handle::resolve(file.handles, &names, &top.key("handles"));
     let cloths: Option<Vec<_>> = {
@@ -105,7 +114,8 @@ fn check_time(file: &SceneFile, top: &At<'_>) {
     top.key("frames_per_second").positive(rate, limits::MAX_FRAME_RATE, "1/s");
     if rate > 0.0 && rate < 1.0 / limits::MAX_FRAME_RATE {
         let limit = 1.0 / limits::MAX_FRAME_RATE;
-        top.key("frames_per_second").complain(format!("{rate:e} 1/s is below the limit of {limit:e} 1/s"));
+        top.key("frames_per_second")
+            .complain(format!("{rate:e} 1/s is below the limit of {limit:e} 1/s"));
     }
     let (frames, substeps) = (f64::from(file.frames), f64::from(file.substeps));
     if frames * substeps > limits::MAX_STEPS {
@@ -157,8 +167,7 @@ fn check_camera(camera: &Camera, scene_up: [f64; 3], at: &At<'_>) {
     if view.norm() < 1e-9 {
         at.key("target").complain("is where the camera stands");
     } else if view.normalize().cross(&up).norm() < 1e-6 * up.norm().max(1e-9) {
-        at.key("up").complain(
-            "is parallel to the direction of view or zero; give an `up` across the view",
-        );
+        at.key("up")
+            .complain("is parallel to the direction of view or zero; give an `up` across the view");
     }
 }

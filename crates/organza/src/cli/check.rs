@@ -1,0 +1,85 @@
+//! `organza check`.
+
+use std::fmt::{self, Write};
+
+use organza::fabric::Fabric;
+use organza::record::{garments, place};
+use organza::scene::{self, Cloth, Dialect, LoadOptions, Loaded};
+use organza::world::World;
+
+use super::args::Check;
+use super::{Failure, output};
+
+pub(crate) fn run(args: &Check) -> Result<(), Failure> {
+    let load = LoadOptions {
+        sets: args.scene.sets.clone(),
+        allow_unsupported: args.scene.allow_unsupported,
+    };
+    let loaded = scene::load(&args.scene.scene, &load)?;
+    let world = World::new(&loaded).map_err(|error| place(&loaded, &error))?;
+    output::warnings(&loaded.warnings);
+    world.warnings.iter().for_each(|warning| output::warning(warning));
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    let _ = write(&mut text, &loaded, &world);
+    output::print(&text)
+}
+
+fn write(out: &mut String, loaded: &Loaded, world: &World) -> fmt::Result {
+    let scene = &loaded.scene;
+    let dialect = match loaded.dialect {
+        Dialect::Organza => "Organza",
+        Dialect::Arcsim => "ARCSim",
+    };
+    let file = loaded.sources.first().map_or("", |source| &source.name);
+    writeln!(out, "{file}: a good scene of {dialect}, named {}", scene.name)?;
+    writeln!(
+        out,
+        "time: {} frames at {} 1/s ({} s), {} steps a frame of {} s",
+        scene.frames,
+        scene.frames_per_second,
+        f64::from(scene.frames) * scene.frame_s(),
+        scene.substeps,
+        scene.step_s(),
+    )?;
+    for (cloth, garment) in scene.cloths.iter().zip(garments(world)) {
+        let area: f64 = garment.material.iter().map(area).sum();
+        let density = cloth.fabric.density_kg_per_m2() * cloth.multipliers.density;
+        writeln!(
+            out,
+            "cloth {}: {} vertices, {} faces, {area:.4} m², {:.4} kg, {} fabric of {density:.4} kg/m²",
+            cloth.name,
+            garment.points.len(),
+            garment.triangles.len(),
+            area * density,
+            match cloth.fabric {
+                Fabric::Orthotropic(_) => "orthotropic",
+                Fabric::Measured(_) => "measured",
+            },
+        )?;
+        options(out, cloth)?;
+    }
+    let held: usize = world.handles.list().iter().map(|handle| handle.held.len()).sum();
+    writeln!(out, "handles: {} on {held} vertices", world.handles.list().len())?;
+    let wind = scene.wind.as_ref().map_or("none".into(), |w| format!("{:?} m/s", w.velocity));
+    writeln!(out, "wind: {wind}")?;
+    writeln!(out, "forces: {}", world.force_names().join(", "))
+}
+
+fn options(out: &mut String, cloth: &Cloth) -> fmt::Result {
+    match &cloth.remeshing {
+        Some(wish) => {
+            let (min, max) = (wish.size_m.min, wish.size_m.max);
+            write!(out, "  remeshing: edges from {min} m to {max} m")?;
+        }
+        None => write!(out, "  remeshing: none, the mesh is fixed")?,
+    }
+    match cloth.strain_limits {
+        Some([min, max]) => writeln!(out, "; stretch limits {min} to {max}"),
+        None => writeln!(out, "; stretch limits: none"),
+    }
+}
+
+fn area([a, b, c]: &[[f64; 2]; 3]) -> f64 {
+    0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+}

@@ -1,0 +1,120 @@
+//! Frames of a recording as mesh files for other programs, one file per frame.
+
+mod error;
+mod files;
+mod obj;
+mod ply;
+
+pub use error::ExportError;
+pub use files::{FilesError, NumberedFiles};
+pub use obj::write_obj;
+pub use ply::write_ply;
+
+use std::fs::File;
+use std::io::{self, Write};
+use std::path::Path;
+
+use io_mcap::{OwnedGarment, Recording, Status};
+
+use crate::record::{FrameRange, RunError};
+
+/// A format of mesh files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Wavefront OBJ, see [`write_obj`].
+    Obj,
+    /// Binary PLY, see [`write_ply`].
+    Ply,
+}
+
+impl Format {
+    /// How names of its files end.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Format::Obj => "obj",
+            Format::Ply => "ply",
+        }
+    }
+
+    /// Writes the garments of one frame.
+    ///
+    /// # Errors
+    /// Those of `out`, and `InvalidInput` for a coordinate that is not finite.
+    pub fn write(self, out: &mut impl Write, garments: &[OwnedGarment]) -> io::Result<()> {
+        match self {
+            Format::Obj => write_obj(out, garments),
+            Format::Ply => write_ply(out, garments),
+        }
+    }
+}
+
+/// What was written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// Number of files.
+    pub files: usize,
+    /// Whether the recording is whole: frames may be missing from one that is not.
+    pub status: Status,
+}
+
+/// Writes the frames `range` of the recording at `path` to files `frame_00000.obj` and so on in
+/// `folder`, which is made if it is not there; `each` is called after every file with the number of
+/// files written and to be written.
+///
+/// # Errors
+/// The recording cannot be read, has none of the frames, a file exists (unless `overwrite`), or
+/// cannot be written. No file is written if one exists.
+pub fn export(
+    path: &Path,
+    format: Format,
+    range: FrameRange,
+    folder: &Path,
+    overwrite: bool,
+    mut each: impl FnMut(usize, usize),
+) -> Result<Written, ExportError> {
+    let mut recording = Recording::open(path).map_err(RunError::recording(path))?;
+    let frames = selected(&recording, path, range)?;
+    let files = NumberedFiles::prepare(folder, format.extension(), &frames, overwrite)?;
+    for (k, &index) in frames.iter().enumerate() {
+        let frame = recording.frame(index).map_err(RunError::recording(path))?;
+        files.write(index, |out| format.write(out, &frame.garments))?;
+        each(k + 1, frames.len());
+    }
+    Ok(Written { files: frames.len(), status: recording.status() })
+}
+
+/// The frames of `range` that a recording has.
+pub(crate) fn selected(
+    recording: &Recording<File>,
+    path: &Path,
+    range: FrameRange,
+) -> Result<Vec<u64>, ExportError> {
+    let all: Vec<u64> = recording.frames().map(|frame| frame.index).collect();
+    let frames: Vec<u64> = all.iter().copied().filter(|&k| range.contains(k)).collect();
+    if frames.is_empty() {
+        let held = match (all.first(), all.last()) {
+            (Some(a), Some(b)) => format!("it holds frames {a} to {b}"),
+            _ => format!("it holds no frame: {}", recording.status()),
+        };
+        return Err(ExportError::NoFrames { path: path.to_owned(), range, held });
+    }
+    Ok(frames)
+}
+
+/// Refuses numbers that other programs cannot read.
+fn check_finite(garments: &[OwnedGarment]) -> io::Result<()> {
+    for OwnedGarment { name, points, material, .. } in garments {
+        let bad = |what: &str, k: usize| {
+            let text = format!("garment {name:?}: {what} {k} is not finite");
+            Err(io::Error::new(io::ErrorKind::InvalidInput, text))
+        };
+        if let Some(k) = points.iter().position(|x| !x.iter().all(|c| c.is_finite())) {
+            return bad("the position of point", k);
+        }
+        let broken = |u: &[[f64; 2]; 3]| !u.as_flattened().iter().all(|c| c.is_finite());
+        if let Some(k) = material.iter().position(broken) {
+            return bad("a material coordinate of triangle", k);
+        }
+    }
+    Ok(())
+}

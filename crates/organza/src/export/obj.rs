@@ -1,0 +1,51 @@
+//! Wavefront OBJ with exact numbers.
+
+use std::collections::BTreeMap;
+use std::io::{self, Write};
+
+use io_mcap::OwnedGarment;
+
+use super::check_finite;
+
+/// Writes garments as groups `g NAME` of one OBJ file: positions `v` (m), material coordinates `vt`
+/// (m) for every corner, so that seams survive, and faces `f v/vt`. Numbers are the shortest that
+/// read back as the same f64; equal material coordinates of a garment are written once. White space
+/// in names becomes `_`.
+///
+/// # Errors
+/// Those of `out`, and `InvalidInput`, before anything is written, for a coordinate that is not
+/// finite.
+pub fn write_obj(out: &mut impl Write, garments: &[OwnedGarment]) -> io::Result<()> {
+    check_finite(garments)?;
+    // OBJ counts from 1, through all groups.
+    let (mut first_v, mut first_vt) = (1, 1);
+    for OwnedGarment { name, points, triangles, material, .. } in garments {
+        let name: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+        writeln!(out, "g {name}")?;
+        // Debug, unlike Display, falls back on exponents where plain digits would be many.
+        for [x, y, z] in points {
+            writeln!(out, "v {x:?} {y:?} {z:?}")?;
+        }
+        let mut numbers = BTreeMap::new();
+        let mut corners = Vec::with_capacity(3 * material.len());
+        for [u, v] in material.as_flattened() {
+            let next = numbers.len();
+            let number = *numbers.entry([u.to_bits(), v.to_bits()]).or_insert(next);
+            if number == next {
+                writeln!(out, "vt {u:?} {v:?}")?;
+            }
+            corners.push(first_vt + number);
+        }
+        for (t, vt) in triangles.iter().zip(corners.chunks_exact(3)) {
+            let [a, b, c] = t.map(|v| first_v + v as usize);
+            writeln!(out, "f {a}/{} {b}/{} {c}/{}", vt[0], vt[1], vt[2])?;
+        }
+        first_v += points.len();
+        first_vt += numbers.len();
+    }
+    Ok(())
+}
+
+fn is_plain(c: char) -> bool {
+    !c.is_whitespace() && !c.is_control()
+}

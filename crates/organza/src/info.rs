@@ -1,0 +1,188 @@
+//! What a recording tells about its run: a row per frame, and totals.
+
+use std::path::Path;
+
+use io_mcap::{Recording, Status};
+use serde::ser::{SerializeMap, Serializer};
+use serde::{Deserialize, Serialize};
+
+use crate::record::RunError;
+use crate::report::FrameReport;
+
+/// Whether a recording is whole.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Wholeness {
+    /// `complete`, `cut` or `damaged`.
+    pub state: String,
+    /// The same in a sentence, with what is missing.
+    pub message: String,
+}
+
+impl Wholeness {
+    fn of(status: &Status) -> Self {
+        let state = match status {
+            Status::Complete => "complete",
+            Status::Cut { .. } => "cut",
+            Status::Damaged { .. } => "damaged",
+        };
+        Self { state: state.into(), message: status.to_string() }
+    }
+}
+
+/// Smallest, mean and largest value and the sum of a figure over frames.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spread {
+    /// Smallest (unit of the values).
+    pub min: f64,
+    /// Mean (unit of the values).
+    pub mean: f64,
+    /// Largest (unit of the values).
+    pub max: f64,
+    /// Sum (unit of the values).
+    pub sum: f64,
+}
+
+impl Spread {
+    /// The spread of some values; `None` for none.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Option<Self> {
+        let mut values = values.into_iter();
+        let first = values.next()?;
+        let (mut n, mut spread) = (1.0, Self { min: first, mean: 0.0, max: first, sum: first });
+        for value in values {
+            spread.min = spread.min.min(value);
+            spread.max = spread.max.max(value);
+            spread.sum += value;
+            n += 1.0;
+        }
+        spread.mean = spread.sum / n;
+        Some(spread)
+    }
+}
+
+/// A named number of every frame.
+type Figure = (&'static str, fn(&FrameReport) -> f64);
+
+/// The figures of [`Info::totals`], in the order shown.
+const FIGURES: [Figure; 19] = [
+    ("vertices", |r| r.vertices as f64),
+    ("faces", |r| r.faces as f64),
+    ("substeps", |r| f64::from(r.substeps)),
+    ("retries", |r| f64::from(r.retries)),
+    ("newton_iterations", |r| r.newton_iterations as f64),
+    ("linear_iterations", |r| r.linear_iterations as f64),
+    ("factorisations", |r| r.factorisations as f64),
+    ("unconverged_stages", |r| r.unconverged_stages as f64),
+    ("splits", |r| r.remesh.map_or(0.0, |m| m.splits as f64)),
+    ("flips", |r| r.remesh.map_or(0.0, |m| m.flips as f64)),
+    ("collapses", |r| r.remesh.map_or(0.0, |m| m.collapses as f64)),
+    ("kinetic_energy_j", |r| r.kinetic_energy_j),
+    ("seconds.total", |r| r.seconds.total),
+    ("seconds.build", |r| r.seconds.build),
+    ("seconds.assembly", |r| r.seconds.assembly),
+    ("seconds.linear", |r| r.seconds.linear),
+    ("seconds.energy", |r| r.seconds.energy),
+    ("seconds.sizing", |r| r.seconds.sizing),
+    ("seconds.remesh", |r| r.seconds.remesh),
+];
+
+/// What a recording tells about its run. As JSON an object with these keys; `totals` is an object
+/// from the name of a figure, such as `faces` or `seconds.total`, to its [`Spread`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Info {
+    /// The file as it was named by the caller.
+    pub recording: String,
+    /// The program that recorded, with its version.
+    pub software: String,
+    /// Name of the scene.
+    pub scene: String,
+    /// Number of frames that the run was to have after the first; absent if the file does not say.
+    pub frames_planned: Option<u64>,
+    /// Whether the recording is whole.
+    pub status: Wholeness,
+    /// Frames with a checkpoint.
+    pub checkpoints: Vec<u64>,
+    /// Names of the attached files, the scene first.
+    pub attachments: Vec<String>,
+    /// The report of every complete frame; frame 0 is the initial state.
+    pub frames: Vec<FrameReport>,
+    /// Spread of every figure over all frames but frame 0; empty if there are none.
+    #[serde(serialize_with = "as_object")]
+    pub totals: Vec<(&'static str, Spread)>,
+    /// Stages that the scene did not need, and why, each once.
+    pub skipped: Vec<String>,
+}
+
+impl Info {
+    /// Reads the reports of a recording, and none of its meshes.
+    ///
+    /// # Errors
+    /// The recording cannot be read, or holds reports of another form.
+    pub fn read(path: &Path) -> Result<Info, RunError> {
+        let mut recording = Recording::open(path).map_err(RunError::recording(path))?;
+        let indices: Vec<u64> = recording.frames().map(|frame| frame.index).collect();
+        let mut frames = Vec::with_capacity(indices.len());
+        for index in indices {
+            let report = recording.report(index).map_err(RunError::recording(path))?;
+            let report = FrameReport::deserialize(report).map_err(|error| {
+                let what = format!("the report of frame {index} is of another form: {error}");
+                RunError::Unusable { path: path.to_owned(), what }
+            })?;
+            frames.push(report);
+        }
+        let metadata = recording.metadata();
+        let mut skipped: Vec<String> = Vec::new();
+        for stage in frames.iter().flat_map(|frame| &frame.skipped) {
+            if !skipped.contains(stage) {
+                skipped.push(stage.clone());
+            }
+        }
+        Ok(Info {
+            recording: path.display().to_string(),
+            software: recording.software().to_owned(),
+            scene: metadata.get("name").cloned().unwrap_or_default(),
+            frames_planned: metadata.get("frames").and_then(|n| n.parse().ok()),
+            status: Wholeness::of(&recording.status()),
+            checkpoints: recording.checkpoints().map(|c| c.frame).collect(),
+            attachments: recording.attachments().into_iter().map(|a| a.name).collect(),
+            totals: totals(&frames),
+            skipped,
+            frames,
+        })
+    }
+
+    /// The spread of one figure.
+    pub fn total(&self, figure: &str) -> Option<Spread> {
+        self.totals.iter().find(|(name, _)| *name == figure).map(|(_, spread)| *spread)
+    }
+}
+
+/// Spread of every figure over all frames but frame 0.
+pub fn totals(frames: &[FrameReport]) -> Vec<(&'static str, Spread)> {
+    let made = || frames.iter().filter(|frame| frame.frame > 0);
+    let spread = |(name, figure): Figure| Some((name, Spread::of(made().map(figure))?));
+    FIGURES.into_iter().filter_map(spread).collect()
+}
+
+fn as_object<S: Serializer>(
+    totals: &[(&'static str, Spread)],
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(totals.len()))?;
+    for (name, spread) in totals {
+        map.serialize_entry(name, spread)?;
+    }
+    map.end()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spreads_of_none_one_and_many() {
+        assert_eq!(Spread::of([]), None);
+        assert_eq!(Spread::of([3.0]), Some(Spread { min: 3.0, mean: 3.0, max: 3.0, sum: 3.0 }));
+        let many = Spread::of([2.0, -1.0, 5.0]);
+        assert_eq!(many, Some(Spread { min: -1.0, mean: 2.0, max: 5.0, sum: 6.0 }));
+    }
+}

@@ -1,0 +1,96 @@
+//! What the colours of a picture show.
+
+use cloth_dynamics::principal_stretches;
+use io_mcap::OwnedGarment;
+use mesh_core::{Material2, World3, geometry};
+
+use crate::render::{Paint, Rgb, VIRIDIS};
+
+/// Stretches at the ends of the colour scale (1).
+pub const STRETCH_RANGE: [f64; 2] = [0.95, 1.05];
+
+/// Colour of the back of all garments.
+const BACK: Rgb = [217, 182, 138];
+
+/// What the colours of a picture show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Colouring {
+    /// Each garment in its colour, the back in another.
+    #[default]
+    Plain,
+    /// The larger principal stretch of every triangle, from dark violet at [`STRETCH_RANGE`]'s start
+    /// over green at rest to yellow at its end.
+    Stretch,
+}
+
+/// The colours of one garment.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum OwnedPaint {
+    Sides { front: Rgb },
+    Triangles(Vec<Rgb>),
+}
+
+impl Colouring {
+    pub(super) fn of(self, garment: &OwnedGarment) -> OwnedPaint {
+        match self {
+            Colouring::Plain => {
+                let [r, g, b, _] = garment.color;
+                // A float cast saturates: no colour can leave its range.
+                OwnedPaint::Sides { front: [r, g, b].map(|c| (255.0 * c).round() as u8) }
+            }
+            Colouring::Stretch => {
+                let [low, high] = STRETCH_RANGE;
+                let colour = |stretch| VIRIDIS.colour_in(stretch, low, high);
+                OwnedPaint::Triangles(stretches(garment).map(colour).collect())
+            }
+        }
+    }
+}
+
+impl OwnedPaint {
+    pub(super) fn borrowed(&self) -> Paint<'_> {
+        match self {
+            OwnedPaint::Sides { front } => Paint::Sides { front: *front, back: BACK },
+            OwnedPaint::Triangles(colours) => Paint::Triangles(colours),
+        }
+    }
+}
+
+/// The larger principal stretch of every triangle (1); not a number where the material triangle has
+/// no area.
+fn stretches(garment: &OwnedGarment) -> impl Iterator<Item = f64> + '_ {
+    garment.triangles.iter().zip(&garment.material).map(|(t, u)| {
+        let x = t.map(|v| World3::from(garment.points[v as usize]));
+        let inverse = geometry::inverse_edges(u.map(Material2::from));
+        if !inverse.iter().all(|entry| entry.is_finite()) {
+            return f64::NAN;
+        }
+        let ([high, _], _) = principal_stretches(&geometry::gradient(x, &inverse));
+        high
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretch_is_that_of_the_triangle() {
+        let mut garment = OwnedGarment {
+            name: "a".into(),
+            points: vec![[0.0, 0.0, 1.0], [0.0, 1.1, 1.0], [2.0, 0.0, 1.0]],
+            triangles: vec![[0, 1, 2]],
+            material: vec![[[0.0, 0.0], [1.0, 0.0], [0.0, 2.0]]],
+            color: [1.0; 4],
+        };
+        let stretch: Vec<f64> = stretches(&garment).collect();
+        assert!((stretch[0] - 1.1).abs() < 1e-15, "{stretch:?}");
+        assert_eq!(
+            Colouring::Stretch.of(&garment),
+            OwnedPaint::Triangles(vec![VIRIDIS.colour(1.0)])
+        );
+        garment.material[0][2] = [2.0, 0.0];
+        assert!(stretches(&garment).all(f64::is_nan));
+        assert_eq!(Colouring::Stretch.of(&garment), OwnedPaint::Triangles(vec![VIRIDIS.undefined]));
+    }
+}

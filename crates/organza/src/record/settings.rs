@@ -1,0 +1,168 @@
+//! What a recording keeps of its run besides frames: enough to build the same world again.
+
+use std::collections::BTreeMap;
+use std::io::{Read, Seek};
+use std::path::Path;
+
+use io_mcap::{Attachment, Header, Recording};
+
+use super::{RunError, RunOptions};
+use crate::scene::{self, LoadOptions, Loaded, Source, limits};
+
+/// The program as recordings name it.
+const SOFTWARE: &str = concat!("organza ", env!("CARGO_PKG_VERSION"));
+/// Folders of the attachments.
+const SCENE_FOLDER: &str = "scene/";
+const FILE_FOLDER: &str = "files/";
+/// Keys of the metadata.
+const SETS: &str = "sets";
+const ALLOW_UNSUPPORTED: &str = "allow_unsupported";
+const FRAMES: &str = "frames";
+const CHECKPOINT_EVERY: &str = "checkpoint_every_frames";
+
+/// How a run was made. With the attached files it decides every bit of its frames.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// How the scene was loaded.
+    pub load: LoadOptions,
+    /// Number of frames after the first.
+    pub frames: u32,
+    /// Frames from checkpoint to checkpoint.
+    pub checkpoint_every: u32,
+}
+
+impl Settings {
+    /// The settings of a new run.
+    ///
+    /// # Errors
+    /// More frames than can be simulated.
+    pub fn new(
+        loaded: &Loaded,
+        load: &LoadOptions,
+        options: &RunOptions,
+    ) -> Result<Self, RunError> {
+        let frames = options.frames.unwrap_or(loaded.scene.frames);
+        let every = options.checkpoint_every;
+        let every = every.unwrap_or(loaded.scene.recording.checkpoint_every_frames).max(1);
+        let settings = Self { load: load.clone(), frames, checkpoint_every: every };
+        settings.check_frames(loaded)?;
+        Ok(settings)
+    }
+
+    /// # Errors
+    /// More frames than can be simulated.
+    pub(super) fn check_frames(&self, loaded: &Loaded) -> Result<(), RunError> {
+        let (frames, scene) = (self.frames, &loaded.scene);
+        let steps = f64::from(frames) * f64::from(scene.substeps);
+        let seconds = f64::from(frames) * scene.frame_s();
+        let too_many = |what, got: f64, limit: f64| {
+            let why = format!("they take {got:e} {what}, above the limit of {limit:e}");
+            Err(RunError::Frames { frames, why })
+        };
+        if steps > limits::MAX_STEPS {
+            return too_many("steps", steps, limits::MAX_STEPS);
+        }
+        if seconds > limits::MAX_TIME_S {
+            return too_many("s", seconds, limits::MAX_TIME_S);
+        }
+        Ok(())
+    }
+
+    /// What to write ahead of the first frame.
+    pub fn header(&self, loaded: &Loaded) -> Header {
+        let scene = &loaded.scene;
+        let text = |value: serde_json::Value| value.to_string();
+        let metadata = BTreeMap::from([
+            ("name".to_owned(), scene.name.clone()),
+            ("frames_per_second".to_owned(), scene.frames_per_second.to_string()),
+            ("substeps".to_owned(), scene.substeps.to_string()),
+            ("up".to_owned(), text(scene.up().as_slice().into())),
+            (SETS.to_owned(), text(self.load.sets.as_slice().into())),
+            (ALLOW_UNSUPPORTED.to_owned(), self.load.allow_unsupported.to_string()),
+            (FRAMES.to_owned(), self.frames.to_string()),
+            (CHECKPOINT_EVERY.to_owned(), self.checkpoint_every.to_string()),
+        ]);
+        let attachments = loaded.sources.iter().enumerate().map(|(k, source)| {
+            let name = if k == 0 {
+                let file = Path::new(&source.name).file_name();
+                format!("{SCENE_FOLDER}{}", file.unwrap_or("scene".as_ref()).to_string_lossy())
+            } else {
+                format!("{FILE_FOLDER}{}", source.name)
+            };
+            let media_type = media_type(&name).to_owned();
+            Attachment { name, media_type, data: source.bytes.clone() }
+        });
+        Header { software: SOFTWARE.into(), metadata, attachments: attachments.collect() }
+    }
+
+    /// Reads the settings back from a recording.
+    ///
+    /// # Errors
+    /// A sentence about what is missing.
+    pub fn of<R: Read + Seek>(recording: &Recording<R>) -> Result<Self, String> {
+        let metadata = recording.metadata();
+        let get = |key: &str| {
+            let value = metadata.get(key);
+            value.ok_or_else(|| format!("its metadata has no `{key}`: the run cannot be repeated"))
+        };
+        let count = |key: &str| {
+            let value = get(key)?;
+            let number = value.parse::<u32>().ok().filter(|&n| n > 0);
+            number.ok_or_else(|| format!("its metadata has `{key}` {value:?}, not a count"))
+        };
+        let sets = get(SETS)?;
+        let load = LoadOptions {
+            sets: serde_json::from_str(sets)
+                .map_err(|_| format!("its metadata has `{SETS}` {sets:?}, not a list of texts"))?,
+            allow_unsupported: get(ALLOW_UNSUPPORTED)? == "true",
+        };
+        Ok(Self { load, frames: count(FRAMES)?, checkpoint_every: count(CHECKPOINT_EVERY)? })
+    }
+
+    /// Loads the scene that is attached to a recording at `path`.
+    pub(super) fn load<R: Read + Seek>(
+        &self,
+        recording: &mut Recording<R>,
+        path: &Path,
+    ) -> Result<Loaded, RunError> {
+        let attachments = recording.header().map_err(RunError::recording(path))?.attachments;
+        let mut sources = attachments.into_iter();
+        let scene = sources.next().filter(|a| a.name.starts_with(SCENE_FOLDER));
+        let scene = scene.ok_or_else(|| RunError::Unusable {
+            path: path.to_owned(),
+            what: "no scene is attached to it".into(),
+        })?;
+        let files: Vec<Source> = sources
+            .filter_map(|a| {
+                let name = a.name.strip_prefix(FILE_FOLDER)?.to_owned();
+                Some(Source { name, bytes: a.data })
+            })
+            .collect();
+        // Messages name the recording as a folder; the name of the scene is then as it was.
+        let name = format!("{}/{}", path.display(), scene.name);
+        Ok(scene::parse(scene.data, &name, &self.load, &scene::from_sources(&files))?)
+    }
+}
+
+/// True if the recording was made by this version, whose bits are the ones that can be continued.
+pub(super) fn same_version<R: Read + Seek>(recording: &Recording<R>) -> Result<(), String> {
+    let software = recording.software();
+    if software == SOFTWARE {
+        return Ok(());
+    }
+    Err(format!("recorded by {software:?}, continued by {SOFTWARE:?}: the bits may differ"))
+}
+
+/// The direction against gravity that a recording notes; z where it notes none.
+pub(crate) fn up<R: Read + Seek>(recording: &Recording<R>) -> [f64; 3] {
+    let noted = recording.metadata().get("up").and_then(|up| serde_json::from_str(up).ok());
+    noted.unwrap_or([0.0, 0.0, 1.0])
+}
+
+fn media_type(name: &str) -> &'static str {
+    match name.rsplit_once('.').map(|(_, extension)| extension) {
+        Some("obj") => "model/obj",
+        Some("json" | "json5") => "application/json",
+        _ => "application/octet-stream",
+    }
+}

@@ -1,0 +1,22 @@
+//! The flag in the wind: fixed against adaptive, and ARCSim's own flag.
+
+use super::report::Report;
+use super::{Benchmark, Context, arcsim, fixed_or_adaptive};
+use crate::command::Failure;
+
+pub(super) const BENCHMARK: Benchmark = Benchmark {
+    name: "flag",
+    summary: "cloth on a fixed and on an adaptive mesh, against a finer reference and ARCSim",
+    run,
+};
+
+fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    if let Some(scene) = &context.options.scene {
+        // Figures of another scene bear its name, so that they are not taken for the flag's.
+        let name = scene.file_stem().unwrap_or_default().to_string_lossy();
+        return fixed_or_adaptive::run(context, report, &name, scene);
+    }
+    fixed_or_adaptive::run(context, report, "flag", &context.root.join("scenes/flag.json5"))?;
+    context.save(report)?;
+    arcsim::run(context, report)
+}

@@ -1,0 +1,156 @@
+//! The program under test, run as its users run it.
+
+use super::cpu_time;
+use super::run_info::RunInfo;
+use crate::command::Failure;
+use serde_json::Value;
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// The `organza` binary.
+#[derive(Clone, Debug)]
+pub(super) struct Program {
+    path: PathBuf,
+}
+
+/// A simulation to run.
+#[derive(Clone, Debug)]
+pub(super) struct Simulation {
+    pub(super) scene: PathBuf,
+    pub(super) frames: usize,
+    /// `PATH=VALUE` each.
+    pub(super) sets: Vec<String>,
+    /// Recording to write; an old one is replaced.
+    pub(super) out: PathBuf,
+}
+
+/// What a run took and told.
+#[derive(Clone, Debug)]
+pub(super) struct Measured {
+    /// CPU time of the whole process, from reading the scene to drawing the last frame (s).
+    pub(super) cpu_s: f64,
+    pub(super) info: RunInfo,
+}
+
+impl Program {
+    /// Builds the binary with Cargo, which also says where it is.
+    ///
+    /// # Errors
+    /// If it does not build.
+    pub(super) fn build(root: &Path) -> Result<Program, Failure> {
+        let words = "build --release --package organza --message-format json-render-diagnostics";
+        let cargo = Command::new("cargo")
+            .args(words.split(' '))
+            .current_dir(root)
+            .stderr(Stdio::inherit())
+            .output()
+            .map_err(unable("cannot start cargo"))?;
+        if !cargo.status.success() {
+            return Err(Failure::Unable("the program does not build".into()));
+        }
+        executable(&String::from_utf8_lossy(&cargo.stdout))
+            .map(|path| Program { path })
+            .ok_or_else(|| Failure::Unable("cargo names no binary `organza`".into()))
+    }
+
+    /// Runs a simulation on one thread.
+    ///
+    /// # Errors
+    /// If the run fails, or says something that is not understood.
+    pub(super) fn simulate(&self, simulation: &Simulation) -> Result<Measured, Failure> {
+        let Simulation { scene, frames, sets, out } = simulation;
+        let mut command = Command::new(&self.path);
+        command.arg("simulate").arg(scene).arg("--out").arg(out);
+        command.args(["--overwrite", "--allow-unsupported", "--threads", "1"]);
+        command.args(["--frames", &frames.to_string()]);
+        sets.iter().for_each(|set| {
+            command.args(["--set", set]);
+        });
+        let before = cpu_time::of_children()?;
+        // Standard error is the user's: progress, warnings, what failed.
+        let status = command.stdout(Stdio::null()).status().map_err(self.cannot_start())?;
+        let cpu_s = cpu_time::of_children()? - before;
+        if !status.success() {
+            let scene = scene.display();
+            return Err(Failure::Unable(format!("the simulation of {scene} failed ({status})")));
+        }
+        let info = self.output(Command::new(&self.path).arg("info").arg(out).arg("--json"))?;
+        let info = RunInfo::parse(&info).map_err(unable(out.display()))?;
+        if info.n_frames() != *frames {
+            let (n, out) = (info.n_frames(), out.display());
+            return Err(Failure::Unable(format!("{out} has {n} frames instead of {frames}")));
+        }
+        Ok(Measured { cpu_s, info })
+    }
+
+    /// Writes frames 0 to `last` of a recording as `frame_00000.obj` and so on into a folder.
+    ///
+    /// # Errors
+    /// If that fails.
+    pub(super) fn export_obj(&self, run: &Path, last: usize, out: &Path) -> Result<(), Failure> {
+        let mut command = Command::new(&self.path);
+        command.arg("export").arg(run).args(["--format", "obj", "--overwrite", "--out"]).arg(out);
+        command.args(["--frames", &format!("0..{}", last + 1)]);
+        self.output(&mut command).map(drop)
+    }
+
+    /// The warnings about a scene.
+    ///
+    /// # Errors
+    /// If it is not a good scene.
+    pub(super) fn warnings(&self, scene: &Path) -> Result<Vec<String>, Failure> {
+        let mut command = Command::new(&self.path);
+        command.arg("check").arg(scene).arg("--allow-unsupported");
+        let output = command.output().map_err(self.cannot_start())?;
+        let told = String::from_utf8_lossy(&output.stderr);
+        if !output.status.success() {
+            return Err(Failure::Unable(told.trim().to_owned()));
+        }
+        Ok(told.lines().filter_map(|l| l.strip_prefix("warning: ")).map(str::to_owned).collect())
+    }
+
+    fn output(&self, command: &mut Command) -> Result<String, Failure> {
+        let output = command.stderr(Stdio::inherit()).output().map_err(self.cannot_start())?;
+        if !output.status.success() {
+            return Err(Failure::Unable(format!("{command:?} failed ({})", output.status)));
+        }
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    }
+
+    fn cannot_start<E: Display>(&self) -> impl FnOnce(E) -> Failure {
+        unable(format!("cannot start {}", self.path.display()))
+    }
+}
+
+fn unable<E: Display>(what: impl Display) -> impl FnOnce(E) -> Failure {
+    move |error| Failure::Unable(format!("{what}: {error}"))
+}
+
+/// The binary in what Cargo tells of a build: one JSON object a line.
+fn executable(messages: &str) -> Option<PathBuf> {
+    messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok()).find_map(
+        |message| {
+            let ours =
+                message["target"]["name"] == "organza" && message["target"]["kind"][0] == "bin";
+            message["executable"].as_str().filter(|_| ours).map(PathBuf::from)
+        },
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_binary_is_the_one_that_cargo_names() {
+        let messages = r#"
+            {"reason":"compiler-artifact","target":{"name":"organza","kind":["lib"]},"executable":null}
+            {"reason":"compiler-artifact","target":{"name":"build","kind":["custom-build"]},"executable":"x/build"}
+            not JSON
+            {"reason":"compiler-artifact","target":{"name":"organza","kind":["bin"]},"executable":"x/organza"}
+            {"reason":"build-finished","success":true}"#;
+        assert_eq!(executable(messages), Some("x/organza".into()));
+        assert_eq!(executable("{}\n"), None);
+    }
+}
