@@ -193,18 +193,20 @@ pub(crate) fn minimise(
             par::fill(&mut trial, |i| x[i] + direction[i] * share);
             let mut value = inertia.potential(system, &trial);
             let mut corrections = 0;
-            while !(value <= bound) && share >= LEAST_CORRECTED && corrections < MAX_CORRECTIONS {
+            let fits = |value: f64| value <= bound;
+            while !fits(value) && share >= LEAST_CORRECTED && corrections < MAX_CORRECTIONS {
                 let before = value;
                 value = correct(system, solver, inertia, &x, &mut trial)
                     .map_err(|source| SolveError::Linear { time, source })?;
                 corrections += 1;
                 // Give up on a correction that does not at least halve the excess.
-                if !(value - bound <= 0.5 * (before - bound)) {
+                let halved = value - bound <= 0.5 * (before - bound);
+                if !halved {
                     break;
                 }
             }
             report.corrections += corrections;
-            if value <= bound {
+            if fits(value) {
                 accepted = Some(value);
                 break;
             }

@@ -42,7 +42,7 @@ impl HalfEdge {
     /// The previous half-edge in the same triangle.
     #[inline]
     pub fn prev(self) -> HalfEdge {
-        HalfEdge(if self.0 % 3 == 0 { self.0 + 2 } else { self.0 - 1 })
+        HalfEdge(if self.0.is_multiple_of(3) { self.0 + 2 } else { self.0 - 1 })
     }
 
     /// The triangle it belongs to.

@@ -3,7 +3,9 @@
 use crate::build::Garment;
 use crate::scene::Scene;
 use mesh_core::ClothState;
-use remesh::{PerPanel, PhysicalSizing, RemeshError, RemeshReport, RemeshSettings, remesh};
+use remesh::{
+    CornerMetrics, PerPanel, PhysicalSizing, RemeshError, RemeshReport, RemeshSettings, adapt,
+};
 use std::time::Instant;
 
 /// What a scene wants of the remesher.
@@ -69,7 +71,9 @@ impl Remeshing {
             obstacle: None,
         };
         let clock = Instant::now();
-        let report = remesh(cloth, &self.sizing, &settings)?;
-        Ok((report, [0.0, clock.elapsed().as_secs_f64()]))
+        let mut metrics = CornerMetrics::evaluate(cloth, &self.sizing, &settings)?;
+        let sizing = clock.elapsed().as_secs_f64();
+        let report = adapt(cloth, &mut metrics, &settings)?;
+        Ok((report, [sizing, clock.elapsed().as_secs_f64() - sizing]))
     }
 }

@@ -239,7 +239,7 @@ impl World {
     }
 
     /// Stages that this scene does not need, and why.
-    fn skipped(&self) -> Vec<String> {
+    pub fn skipped(&self) -> Vec<String> {
         let mut skipped = Vec::new();
         let mut note = |absent: bool, text: &str| {
             if absent {

@@ -105,7 +105,8 @@ impl Driver<'_> {
     }
 
     /// The best collapse of a vertex. What depends on its star alone is checked always; the topology,
-    /// which depends on its neighbours' stars, hardly ever refuses and is checked if asked for.
+    /// which depends on its neighbours' stars, hardly ever refuses off the lines (whose bends do) and
+    /// is checked there only if asked for.
     fn examine(&self, v: VertexId, with_topology: bool) -> Verdict {
         let mesh = &self.cloth.mesh;
         if self.kept[v.index()] {
@@ -115,11 +116,12 @@ impl Driver<'_> {
         if self.has_fixed() && star.spokes().iter().any(|h| self.is_fixed(h.triangle())) {
             return None;
         }
+        let is_checked = with_topology || star.is_open() || self.metrics.on_line[v.index()];
         let mut removals = self.valid_removals(v, &star);
         removals.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.kept.cmp(&q.1.kept)));
         let is_admissible = |removal: &Removal| {
             self.keeps_shape(&star, removal)
-                && (!with_topology || mesh.can_collapse(v, removal.kept, |_, _| {}).is_ok())
+                && (!is_checked || mesh.can_collapse(v, removal.kept, |_, _| {}).is_ok())
         };
         let best = removals.iter().find(|(_, removal)| is_admissible(removal));
         best.map(|(size_squared, removal)| (*size_squared, removal.kept))

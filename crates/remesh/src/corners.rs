@@ -167,7 +167,7 @@ impl CornerMetrics {
         moved: &[(HalfEdge, Metric)],
     ) {
         for (h, metric) in moved {
-            let _ = metric;
+            self.corner[h.triangle().index()][h.corner()] = *metric;
         }
         for t in gone.into_iter().flatten() {
             self.corner.swap_remove(t.index());

@@ -26,13 +26,14 @@ impl Driver<'_> {
             if self.metrics.size_squared(&self.cloth.mesh, h).to_bits() != bits {
                 continue;
             }
+            if self.is_held(h) {
+                continue;
+            }
             if self.cloth.mesh.n_vertices() >= self.settings.max_vertices {
                 self.vertex_limit_reached = true;
                 return;
             }
-            if !self.is_held(h) {
-                self.split_edge(h, &mut queue);
-            }
+            self.split_edge(h, &mut queue);
         }
     }
 

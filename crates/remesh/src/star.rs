@@ -69,6 +69,11 @@ impl Star {
         star
     }
 
+    /// True if the boundary passes through the vertex.
+    pub(crate) fn is_open(&self) -> bool {
+        self.open
+    }
+
     /// The half-edges.
     #[inline]
     pub(crate) fn spokes(&self) -> &[HalfEdge] {

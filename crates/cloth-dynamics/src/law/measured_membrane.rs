@@ -25,7 +25,7 @@ const DIRECTIONS: [f64; 5] =
 /// Data-driven stretching.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredMembrane {
-    rows: [Matrix3<f64>; 6],
+    rows: Box<[Matrix3<f64>; 6]>,
     /// How many rows had to be changed to be positive semi-definite.
     repaired: usize,
 }
@@ -59,7 +59,7 @@ impl MeasuredMembrane {
             }
             Matrix3::new(a, b, 0.0, b, c, 0.0, 0.0, 0.0, s)
         });
-        MeasuredMembrane { rows, repaired }
+        MeasuredMembrane { rows: Box::new(rows), repaired }
     }
 
     /// How many of the six rows were not positive semi-definite and were projected.

@@ -1,5 +1,5 @@
 //! Strips and the loop that brings them to rest.
-#![allow(dead_code)]
+#![allow(dead_code, unreachable_pub)]
 
 use cloth_dynamics::law::{Bending, Membrane, Quadratic};
 use cloth_dynamics::solver::{LinearSettings, SparseCholesky};
