@@ -90,7 +90,8 @@ fn measure(
     let name = |what: &str| format!("flag.arcsim_{frames}_frames_{what}");
     let times: Vec<f64> = measured.iter().map(|m| m.cpu_s).collect();
     let note = format!(
-        "First {frames} frames, one thread, whole process; median of the runs. ARCSim 0.2.1 takes \
+        "First {frames} frames, one thread, whole process, recording and picture included; median of \
+         the runs. ARCSim 0.2.1 takes \
          {arcsim_cpu_s:.1} s on a free core of an AMD EPYC, with self-contact.{}{warnings}",
         info.troubles()
     );

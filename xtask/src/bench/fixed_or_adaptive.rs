@@ -124,8 +124,8 @@ fn error_note(last: usize, faces: f64, substeps: usize) -> String {
     let [nx, ny] = LATTICE;
     format!(
         "RMS distance from the reference ({faces:.0} faces, {substeps} steps a frame) at the same \
-         {nx} × {ny} material points; mean over frames 1 to {last}, spread over these frames. A flag \
-         is chaotic: small differences grow until later frames have nothing in common, so only the \
+         {nx} × {ny} material points; mean over frames 1 to {last}, spread over these frames. Flags \
+         are chaotic: small differences grow until later frames have nothing in common, so only the \
          first frames are compared; the reference too is only one of the possible motions."
     )
 }
@@ -146,7 +146,8 @@ fn fixed_mesh([nx, ny]: [usize; 2]) -> Vec<String> {
 fn times(report: &mut Report, name: &str, v: &Variant<'_>) {
     let info = &v.measured[0].info;
     let note = format!(
-        "Whole process over {} frames, one thread; median of the runs.{}",
+        "Whole process over {} frames, recording and picture included, one thread; median of the \
+         runs.{}",
         v.simulation.frames,
         info.troubles()
     );
@@ -171,7 +172,7 @@ fn faces(report: &mut Report, name: &str, [adaptive, fixed, reference]: [&Varian
         report.add(&format!("{name}.faces.{}", v.name), faces);
     }
     let note = format!(
-        "Whole process over {} frames, one thread.{}",
+        "Whole process over {} frames, recording and picture included, one thread.{}",
         reference.simulation.frames,
         reference.measured[0].info.troubles()
     );
