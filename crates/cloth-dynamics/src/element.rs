@@ -84,11 +84,6 @@ impl<M: ElementModel<N>, const N: usize> Elements<M, N> {
         Elements { model, slots: None }
     }
 
-    /// The model.
-    pub fn model(&self) -> &M {
-        &self.model
-    }
-
     fn corners(&self, e: usize, x: &[World3]) -> [World3; N] {
         self.model.stencils()[e].map(|i| if i == ABSENT { World3::zeros() } else { x[i as usize] })
     }

@@ -13,8 +13,6 @@ pub struct Stage<'a> {
     pub base: &'a [World3],
     /// Step of the implicit stage (s).
     pub h: f64,
-    /// Time at the end of the stage (s).
-    pub time: f64,
 }
 
 /// One contribution to the incremental potential: an energy (J) with exact gradient (N) and a

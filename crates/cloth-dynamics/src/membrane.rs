@@ -109,20 +109,21 @@ impl ElementModel<3> for MembraneModel {
 
     fn begin(&mut self, stage: Stage<'_>) {
         self.h = stage.h;
-        let mut tension = std::mem::take(&mut self.tension);
-        par::fill(&mut tension, |e| {
-            let x = self.stencils[e].map(|i| stage.x_t0[i as usize]);
-            let f = self.rest[e].deformation_gradient(&x);
-            self.fabric(e).membrane.response(&RestTriangle::green_strain(&f)).stress
-        });
-        self.tension = tension;
+        let strain = |rest: &[RestTriangle], stencil: [u32; 3], e: usize| {
+            let x = stencil.map(|i| stage.x_t0[i as usize]);
+            RestTriangle::green_strain(&rest[e].deformation_gradient(&x))
+        };
         if self.damped {
             let (rest, stencils) = (&self.rest, &self.stencils);
-            par::fill(&mut self.strain_t0, |e| {
-                let x = stencils[e].map(|i| stage.x_t0[i as usize]);
-                RestTriangle::green_strain(&rest[e].deformation_gradient(&x))
-            });
+            par::fill(&mut self.strain_t0, |e| strain(rest, stencils[e], e));
         }
+        // Nothing has moved yet, so damping adds no stress.
+        let mut tension = std::mem::take(&mut self.tension);
+        par::fill(&mut tension, |e| {
+            let strain = strain(&self.rest, self.stencils[e], e);
+            self.fabric(e).membrane.response(&strain).stress
+        });
+        self.tension = tension;
     }
 
     fn predict(&mut self, x: &[World3], step: &[World3]) {

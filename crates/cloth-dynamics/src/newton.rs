@@ -179,7 +179,6 @@ pub(crate) fn minimise(
         report.iterations += 1;
 
         let clock = Instant::now();
-        system.predict(&x, &direction);
         let slope = -par::sum(n, |i| rhs[i].dot(&direction[i]));
         let largest = direction.iter().map(|d| d.norm_squared()).fold(0.0, f64::max).sqrt();
         report.residual = largest / h;
@@ -188,16 +187,18 @@ pub(crate) fn minimise(
         let noise = 1e-13 * phi.abs();
         let mut share = 1.0;
         let mut accepted = None;
+        let linear_before = report.linear_s;
         for _ in 0..=MAX_HALVINGS {
             let bound = phi + SUFFICIENT * share * slope + noise;
-            par::fill(&mut trial, |i| x[i] + direction[i] * share);
+            // What is predicted, corrected and lagged is the step as it is tried.
+            system.predict(&x, &direction);
+            par::fill(&mut trial, |i| x[i] + direction[i]);
             let mut value = inertia.potential(system, &trial);
             let mut corrections = 0;
             let fits = |value: f64| value <= bound;
             while !fits(value) && share >= LEAST_CORRECTED && corrections < MAX_CORRECTIONS {
                 let before = value;
-                value = correct(system, solver, inertia, &x, &mut trial)
-                    .map_err(|source| SolveError::Linear { time, source })?;
+                value = correct(system, solver, inertia, &x, &mut trial, &mut report)?;
                 corrections += 1;
                 // Give up on a correction that does not at least halve the excess.
                 let halved = value - bound <= 0.5 * (before - bound);
@@ -205,15 +206,15 @@ pub(crate) fn minimise(
                     break;
                 }
             }
-            report.corrections += corrections;
             if fits(value) {
                 accepted = Some(value);
                 break;
             }
             share *= 0.5;
+            par::for_each(&mut direction, |_, d| *d *= 0.5);
             report.halvings += 1;
         }
-        report.energy_s += clock.elapsed().as_secs_f64();
+        report.energy_s += clock.elapsed().as_secs_f64() - (report.linear_s - linear_before);
         let Some(value) = accepted else {
             // No descent left within rounding: report it instead of going in circles.
             converged = false;
@@ -240,7 +241,8 @@ fn correct(
     inertia: &Inertia<'_>,
     x: &[World3],
     trial: &mut [World3],
-) -> Result<f64, LinearError> {
+    report: &mut SolveReport,
+) -> Result<f64, SolveError> {
     let mut rhs = system.remainder(x, trial);
     for g in &mut rhs {
         *g = -*g;
@@ -249,8 +251,14 @@ fn correct(
     if !rhs.iter().all(|g| g.iter().all(|c| c.is_finite())) {
         return Ok(f64::NAN);
     }
+    let clock = Instant::now();
     let mut step = vec![World3::zeros(); trial.len()];
-    solver.solve_again(&system.matrix, &rhs, &mut step)?;
+    let linear = solver
+        .solve_again(&system.matrix, &rhs, &mut step)
+        .map_err(|source| SolveError::Linear { time: inertia.time, source })?;
+    report.note(&linear);
+    report.corrections += 1;
+    report.linear_s += clock.elapsed().as_secs_f64();
     for (x, d) in trial.iter_mut().zip(&step) {
         *x += d;
     }

@@ -102,11 +102,6 @@ impl System {
         self.forces.iter().map(|f| f.energy(x)).sum::<f64>() + self.springs.energy(x)
     }
 
-    /// Energy of the force of one name (J), zero if it does not exist.
-    pub fn energy_of(&self, name: &str, x: &[World3]) -> f64 {
-        self.forces.iter().filter(|f| f.name() == name).map(|f| f.energy(x)).sum()
-    }
-
     /// Gradient of [`System::energy`] (N).
     pub fn gradient(&self, x: &[World3]) -> Vec<World3> {
         let mut gradient = vec![World3::zeros(); x.len()];

@@ -23,24 +23,21 @@ const CANTILEVER: [(f64, f64, f64); 4] = [
 /// Drop and reach over the length of a strip with `n` cells along it.
 fn cantilever(gamma: f64, n: usize, diagonal: Diagonal) -> (f64, f64) {
     let (length, density) = (0.1, 0.2);
-    let cell = length / n as f64;
+    // One more cell is clamped. A mesh bends between the middles of its cells, so the free length
+    // begins in the middle of the clamped one.
+    let cell = length / (n as f64 + 0.5);
     let rigidity = density * G * f64::powi(length, 3) / gamma;
-    // One more cell is clamped; a mesh bends between the middles of its cells, so the free length
-    // begins in the middle of the clamped one. Hence half a cell more is left over at the end.
-    let cloth = sheet([length + 0.5 * cell, 2.0 * cell], [n + 1, 2], diagonal, density);
-    let cell = (length + 0.5 * cell) / (n + 1) as f64;
-    let free = length + 0.5 * length / n as f64 - 0.5 * cell;
+    let cloth = sheet([(n + 1) as f64 * cell, 2.0 * cell], [n + 1, 2], diagonal, density);
     let held = hold(&cloth, |x| x.x < 1.5 * cell);
     // Nearly inextensible: the weight stretches it by 1e-6.
     let stretch = density * G * length / 1e-6;
-    let gamma_scale = (free / length).powi(3);
-    let mut run = Run::new(cloth, fabric(stretch, rigidity * gamma_scale, density), &gravity());
+    let mut run = Run::new(cloth, fabric(stretch, rigidity, density), &gravity());
     run.rest(&held, 0.05);
     let end = run.cloth.x.iter().zip(run.cloth.mesh.vertices());
     let tip: Vec<World3> =
         end.filter(|(_, v)| v.index() % (n + 2) == n + 1).map(|(x, _)| *x).collect();
     let tip: World3 = tip.iter().sum::<World3>() / tip.len() as f64;
-    (-tip.z / free, (tip.x - 0.5 * cell) / free)
+    (-tip.z / length, (tip.x - 0.5 * cell) / length)
 }
 
 /// Within 1 % of the length with elements of half a boundary layer, L/(2√Γ), or finer.
@@ -65,7 +62,7 @@ fn cantilever_converges() {
     let (gamma, drop, _) = CANTILEVER[1];
     let errors = [8, 16].map(|n| (cantilever(gamma, n, Diagonal::Alternating).0 - drop).abs());
     println!("errors {errors:?}");
-    assert!(errors[1] < 0.35 * errors[0] || errors[1] < 1e-3, "{errors:?}");
+    assert!(errors[1] < 0.35 * errors[0], "{errors:?}");
 }
 
 /// (distance of the ends over the length, sag over the length) of an inextensible chain.
@@ -188,7 +185,7 @@ fn hinge_has_the_known_effective_rigidity() {
             .sum();
         let rigidity = energy / 0.36 * 2.0 * radius * radius;
         println!("{degrees}°: {rigidity:.6} ({expected})");
-        // The window cuts cells at its border: one part in 24.
-        assert!((rigidity / expected - 1.0).abs() < 0.05, "{degrees}°: {rigidity}, {expected}");
+        // The reference rolled a finite strip, which is 1.2 % off the exact 0.25 at 0° and 90°.
+        assert!((rigidity / expected - 1.0).abs() < 0.02, "{degrees}°: {rigidity}, {expected}");
     }
 }

@@ -108,7 +108,7 @@ fn gather<const N: usize>(stencil: &[u32; N], x: &[World3]) -> [World3; N] {
 /// piecewise law, where differences across it disagree.
 fn check<const N: usize>(model: &mut impl ElementModel<N>, cloth: &ClothState, kinks: f64) {
     let base: Vec<World3> = cloth.x.iter().map(|x| x + World3::new(0.001, 0.0, -0.002)).collect();
-    model.begin(Stage { x_t0: &cloth.x, base: &base, h: 0.005, time: 0.0 });
+    model.begin(Stage { x_t0: &cloth.x, base: &base, h: 0.005 });
     let (mut bad, mut total) = (0usize, 0usize);
     for (pose, x) in poses(cloth) {
         for e in 0..model.stencils().len() {
@@ -194,7 +194,7 @@ fn projected_is_positive<const N: usize>(model: &impl ElementModel<N>, e: usize,
 /// Where the exact Hessian is positive the projected one must be the same.
 fn exact_where_flat<const N: usize>(model: &mut impl ElementModel<N>, cloth: &ClothState) {
     let x: Vec<World3> = cloth.x.iter().map(|x| x * 1.001).collect();
-    model.begin(Stage { x_t0: &x, base: &cloth.x, h: 0.005, time: 0.0 });
+    model.begin(Stage { x_t0: &x, base: &cloth.x, h: 0.005 });
     for e in 0..model.stencils().len() {
         let corners = gather(&model.stencils()[e], &x);
         let [mut exact, mut projected] = [ElementSystem::<N>::zero(), ElementSystem::<N>::zero()];

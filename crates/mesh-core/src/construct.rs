@@ -1,7 +1,7 @@
 //! Building a mesh from an index buffer, and what can be wrong with one.
 
 use crate::geometry::{Material2, signed_area};
-use crate::ids::{HalfEdge, NONE, VertexId};
+use crate::ids::{NONE, VertexId};
 use crate::mesh::Mesh;
 
 /// What is wrong with a mesh or with the data it should be built from.
@@ -152,35 +152,12 @@ impl Mesh {
         Ok(self)
     }
 
-    /// The same mesh with the [anchors](Mesh::anchors) it had when it was saved.
-    ///
-    /// # Errors
-    /// If an anchor does not leave its vertex, or a boundary vertex is not anchored at its boundary.
-    pub fn with_anchors(mut self, anchors: Vec<u32>) -> Result<Mesh, MeshError> {
-        let (expected, got) = (self.n_vertices(), anchors.len());
-        if expected != got {
-            return Err(MeshError::Length { what: "vertex anchors", expected, got });
-        }
-        for (v, &h) in anchors.iter().enumerate() {
-            let leaves = (h as usize) < self.twin.len() && self.origin(HalfEdge(h)).index() == v;
-            let boundary = self.is_boundary_vertex(VertexId(v as u32));
-            if !leaves || boundary && self.out[v] != h {
-                return Err(MeshError::Broken(format!("vertex {v} cannot be anchored at {h}")));
-            }
-        }
-        self.out = anchors;
-        Ok(self)
-    }
-
     /// Finds each vertex's first outgoing half-edge and makes sure that one fan holds them all.
     fn anchor_all(&mut self) -> Result<(), MeshError> {
+        self.normalise();
         let mut degree = vec![0u32; self.n_vertices()];
-        for h in (0..self.twin.len() as u32).map(HalfEdge) {
-            let v = self.origin(h).index();
-            degree[v] += 1;
-            if self.out[v] == NONE || self.is_boundary_edge(h) {
-                self.out[v] = h.0;
-            }
+        for &vertex in self.tri.iter().flatten() {
+            degree[vertex as usize] += 1;
         }
         for (vertex, &count) in degree.iter().enumerate() {
             if count == 0 {

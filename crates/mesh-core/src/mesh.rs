@@ -57,13 +57,6 @@ impl Mesh {
         &self.uid
     }
 
-    /// One outgoing half-edge per vertex, from which [`Mesh::outgoing`] starts: on the boundary it
-    /// is determined, inside it depends on past edits. Sums round a vertex follow this order, so a
-    /// checkpoint keeps it.
-    pub fn anchors(&self) -> &[u32] {
-        &self.out
-    }
-
     /// The uid that the next new vertex will get.
     pub fn next_uid(&self) -> u64 {
         self.next_uid

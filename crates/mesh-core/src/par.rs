@@ -51,14 +51,6 @@ pub fn sum(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
     partial.iter().sum()
 }
 
-/// Runs two closures, at the same time if there is a second thread.
-pub fn join<A: Send, B: Send>(
-    a: impl FnOnce() -> A + Send,
-    b: impl FnOnce() -> B + Send,
-) -> (A, B) {
-    if rayon::current_num_threads() > 1 { rayon::join(a, b) } else { (a(), b()) }
-}
-
 /// Number of threads that the maps use.
 pub fn n_threads() -> usize {
     rayon::current_num_threads()

@@ -39,7 +39,6 @@ pub fn save(world: &mut World) -> Checkpoint {
         ("material".into(), Column::F64(material)),
         ("panels".into(), Column::U32(mesh.panels().to_vec())),
         ("uids".into(), Column::U64(mesh.uids().to_vec())),
-        ("anchors".into(), Column::U32(mesh.anchors().to_vec())),
         ("next_uid".into(), Column::U64(vec![mesh.next_uid()])),
         ("x".into(), flat(&world.cloth.x)),
         ("v".into(), flat(&world.cloth.v)),
@@ -90,7 +89,6 @@ pub fn restore(world: &mut World, checkpoint: &Checkpoint) -> Result<(), Restore
     let mesh_error = |source| RestoreError::Mesh { frame, source };
     let mesh = Mesh::new(x.len(), triangles, material, u32s("panels", "panels")?.to_vec())
         .and_then(|m| m.with_uids(u64s("uids", "uids").unwrap_or_default().to_vec(), next_uid))
-        .and_then(|m| m.with_anchors(u32s("anchors", "anchors").unwrap_or_default().to_vec()))
         .map_err(mesh_error)?;
     let density = world.cloth.densities().to_vec();
     let cloth = ClothState::new(mesh, x, v, density).map_err(mesh_error)?;

@@ -14,12 +14,23 @@ pub struct Handle {
     pub number: usize,
     /// Held vertices by lasting name, with where they were when the handle took hold (m).
     pub held: Vec<(u64, Option<World3>)>,
-    /// True if it holds a line or an area: vertices that appear between held ones are held too.
-    region: bool,
+    /// Which vertices that appear between held ones are held too.
+    extent: Extent,
     motion: Option<Motion>,
     start: f64,
     end: f64,
     stiffness: Option<f64>,
+}
+
+/// What a handle holds of the cloth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Extent {
+    /// Single vertices.
+    Points,
+    /// A part of the border: new vertices on it are held.
+    Border,
+    /// An area: new vertices inside it are held.
+    Area,
 }
 
 /// All handles of a scene.
@@ -53,7 +64,11 @@ impl Handles {
         self.handles.push(Handle {
             number,
             held: chosen.iter().map(|v| (u64::from(v.0 + first_vertex), None)).collect(),
-            region: !matches!(handle.select, Select::Vertices(_) | Select::Corners(_)),
+            extent: match handle.select {
+                Select::Vertices(_) | Select::Corners(_) => Extent::Points,
+                Select::Sides(_) | Select::Boundary => Extent::Border,
+                Select::Box(_) | Select::All => Extent::Area,
+            },
             motion: handle.motion.clone(),
             start: handle.start_s,
             end: handle.end_s,
@@ -78,14 +93,10 @@ impl Handles {
     }
 
     /// Handles that take hold at or before `time` (s) note where their vertices are now.
-    pub fn take_hold(&mut self, cloth: &ClothState, time: f64) {
-        let mut index = None;
+    pub fn take_hold(&mut self, cloth: &ClothState, names: &[(u64, u32)], time: f64) {
         for handle in self.handles.iter_mut().filter(|h| h.start <= time + INSTANT) {
-            if handle.held.iter().any(|(_, home)| home.is_none()) {
-                let index = index.get_or_insert_with(|| by_name(&cloth.mesh));
-                for (uid, home) in handle.held.iter_mut().filter(|(_, home)| home.is_none()) {
-                    *home = lookup(index, *uid).map(|i| cloth.x[i as usize]);
-                }
+            for (uid, home) in handle.held.iter_mut().filter(|(_, home)| home.is_none()) {
+                *home = lookup(names, *uid).map(|i| cloth.x[i as usize]);
             }
         }
     }
@@ -112,18 +123,26 @@ impl Handles {
 
     /// Follows the edits of a remeshing call: `before` are the names before it.
     pub fn follow(&mut self, before: &[u64], mut next_uid: u64, edits: &[Edit]) {
-        if self.handles.iter().all(|h| !h.region) {
+        if self.handles.iter().all(|h| h.extent == Extent::Points) {
             return;
         }
         let mut names = before.to_vec();
         for edit in edits {
             match *edit {
-                Edit::Split { a, b, .. } => {
+                Edit::Split { a, b, parents, .. } => {
                     let (a, b) = (names[a.index()], names[b.index()]);
-                    for handle in self.handles.iter_mut().filter(|h| h.region) {
-                        let find = |uid| handle.held.iter().find(|(u, _)| *u == uid);
-                        if let (Some((_, x_a)), Some((_, x_b))) = (find(a), find(b)) {
-                            let home = x_a.zip(*x_b).map(|(a, b)| (a + b) * 0.5);
+                    let on_border = parents[1].is_none();
+                    let grows = |h: &&mut Handle| match h.extent {
+                        Extent::Points => false,
+                        Extent::Border => on_border,
+                        Extent::Area => true,
+                    };
+                    for handle in self.handles.iter_mut().filter(grows) {
+                        // Sorted by name: they start so, and new names are larger than all others.
+                        let held = &handle.held;
+                        let find = |uid| held.binary_search_by_key(&uid, |&(u, _)| u).ok();
+                        if let (Some(a), Some(b)) = (find(a), find(b)) {
+                            let home = held[a].1.zip(held[b].1).map(|(a, b)| (a + b) * 0.5);
                             handle.held.push((next_uid, home));
                         }
                     }

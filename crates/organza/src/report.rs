@@ -97,6 +97,9 @@ pub struct FrameReport {
     pub analyses: usize,
     /// Halvings in the line search.
     pub halvings: usize,
+    /// Second-order corrections in the line search.
+    #[serde(default)]
+    pub corrections: usize,
     /// Implicit stages solved.
     pub stages: usize,
     /// Implicit stages that stopped before they reached the tolerance.
@@ -144,6 +147,7 @@ impl FrameReport {
             factorisations: solve.factorisations,
             analyses: solve.analyses,
             halvings: solve.halvings,
+            corrections: solve.corrections,
             stages: solve.stages,
             unconverged_stages: solve.unconverged,
             residual_m_per_s: solve.residual,
@@ -156,13 +160,8 @@ impl FrameReport {
                 limit_reached: r.limit_reached(),
             }),
             kinetic_energy_j: world.cloth.kinetic_energy(),
-            skipped: Vec::new(),
+            skipped: world.skipped(),
             seconds,
         }
-    }
-
-    pub(crate) fn with_skipped(mut self, skipped: Vec<String>) -> Self {
-        self.skipped = skipped;
-        self
     }
 }

@@ -6,9 +6,7 @@ use crate::remeshing::Remeshing;
 use crate::report::{FrameReport, Seconds, StretchRange};
 use crate::scene::Loaded;
 use crate::scene::format::{Integrator, LinearSolver as Method};
-use cloth_dynamics::solver::{
-    Auto, BlockJacobiCg, LinearSettings, LinearSolver, SparseCholesky, StaleFactorCg,
-};
+use cloth_dynamics::solver::{LinearSettings, LinearSolver, PatternError, SolverKind};
 use cloth_dynamics::{
     Environment, Fabric, ImplicitEuler, NewtonSettings, Sdirk2, SolveError, SolveReport, Step,
     System, TimeIntegrator, Wind,
@@ -70,8 +68,16 @@ pub struct World {
     newton: NewtonSettings,
     solver: Box<dyn LinearSolver>,
     remeshing: Option<Remeshing>,
-    /// Forces and matrix of the current mesh; absent after the mesh has changed.
-    system: Option<System>,
+    /// What is worked out once per mesh; absent after the mesh has changed.
+    prepared: Option<Prepared>,
+}
+
+/// What follows from the current mesh alone.
+struct Prepared {
+    /// Forces and matrix.
+    system: System,
+    /// Lasting names of the vertices with their indices, see [`by_name`].
+    names: Vec<(u64, u32)>,
 }
 
 impl std::fmt::Debug for World {
@@ -93,11 +99,11 @@ impl World {
         let scene = &loaded.scene;
         let settings =
             LinearSettings { tolerance: scene.linear_tolerance, ..LinearSettings::default() };
-        let solver: Box<dyn LinearSolver> = match scene.linear_solver {
-            Method::Auto => Box::new(Auto::new(settings)),
-            Method::Cholesky => Box::new(SparseCholesky::new(settings)),
-            Method::StaleCholesky => Box::new(StaleFactorCg::new(settings)),
-            Method::Pcg => Box::new(BlockJacobiCg::new(settings)),
+        let solver = match scene.linear_solver {
+            Method::Auto => SolverKind::Auto,
+            Method::Cholesky => SolverKind::SparseCholesky,
+            Method::StaleCholesky => SolverKind::StaleFactorCg,
+            Method::Pcg => SolverKind::BlockJacobiCg,
         };
         let integrator: Box<dyn TimeIntegrator> = match scene.integrator {
             Integrator::ImplicitEuler => Box::new(ImplicitEuler),
@@ -124,10 +130,10 @@ impl World {
                 max_iterations: scene.newton.max_iterations as usize,
                 tolerance: scene.newton.tolerance,
             },
-            solver,
-            system: None,
+            solver: solver.build(settings),
+            prepared: None,
         };
-        world.system().map_err(|e| BuildError::TooLarge(e.to_string()))?;
+        world.prepare().map_err(|e| BuildError::TooLarge(e.to_string()))?;
         Ok(world)
     }
 
@@ -158,7 +164,7 @@ impl World {
                 .run(&mut self.cloth, &keep)
                 .map_err(|source| StepError::Remesh { frame, source })?;
             if report.n_edits() > 0 {
-                self.system = None;
+                self.prepared = None;
                 self.handles.follow(&before, next, &report.journal);
             }
             seconds.sizing = times[0];
@@ -168,10 +174,8 @@ impl World {
         self.frame = frame;
         seconds.solve(&solve);
         seconds.total = clock.elapsed().as_secs_f64();
-        let substeps = self.substeps;
-        let skipped = self.skipped();
-        Ok(FrameReport::new(self, substeps, retries, &solve, remesh.as_ref(), stretch, seconds)
-            .with_skipped(skipped))
+        let (substeps, remesh) = (self.substeps, remesh.as_ref());
+        Ok(FrameReport::new(self, substeps, retries, &solve, remesh, stretch, seconds))
     }
 
     /// One step; a failing one is redone in halves.
@@ -185,17 +189,15 @@ impl World {
         seconds: &mut Seconds,
     ) -> Result<(), StepError> {
         let clock = Instant::now();
-        self.system().map_err(|e| StepError::TooLarge { frame, message: e.to_string() })?;
+        self.prepare().map_err(|e| StepError::TooLarge { frame, message: e.to_string() })?;
         seconds.build += clock.elapsed().as_secs_f64();
-        self.handles.take_hold(&self.cloth, step.time);
-        let names = by_name(&self.cloth.mesh);
-        let Some(system) = &mut self.system else { return Ok(()) };
-        let constraints = |time: f64| self.handles.constraints(&names, time);
-        let solver = self.solver.as_mut();
+        let Prepared { system, names } = self.prepared.as_mut().expect("prepare() has run");
+        self.handles.take_hold(&self.cloth, names, step.time);
+        let constraints = |time: f64| self.handles.constraints(names, time);
         match self.integrator.advance(
             &mut self.cloth,
             system,
-            solver,
+            self.solver.as_mut(),
             &constraints,
             &self.newton,
             step,
@@ -218,10 +220,11 @@ impl World {
         }
     }
 
-    /// Builds forces and matrix if the mesh has changed.
-    fn system(&mut self) -> Result<(), cloth_dynamics::solver::PatternError> {
-        if self.system.is_none() {
-            self.system = Some(System::new(&self.cloth, &self.fabrics, &self.environment)?);
+    /// Builds forces, matrix and names if the mesh has changed.
+    fn prepare(&mut self) -> Result<(), PatternError> {
+        if self.prepared.is_none() {
+            let system = System::new(&self.cloth, &self.fabrics, &self.environment)?;
+            self.prepared = Some(Prepared { system, names: by_name(&self.cloth.mesh) });
         }
         Ok(())
     }
@@ -230,12 +233,12 @@ impl World {
     /// one that starts from a checkpoint of this state have the same bits.
     pub fn forget(&mut self) {
         self.solver.reset();
-        self.system = None;
+        self.prepared = None;
     }
 
     /// Names of the forces that exist.
     pub fn force_names(&self) -> Vec<&'static str> {
-        self.system.as_ref().map(System::force_names).unwrap_or_default()
+        self.prepared.as_ref().map(|p| p.system.force_names()).unwrap_or_default()
     }
 
     /// Stages that this scene does not need, and why.

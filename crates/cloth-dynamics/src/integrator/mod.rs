@@ -60,7 +60,7 @@ fn solve_stage(
     start: StageStart<'_>,
 ) -> Result<(Vec<World3>, SolveReport), SolveError> {
     let StageStart { x_t0, base, velocity, h, time, constraints } = start;
-    system.begin(Stage { x_t0, base, h, time });
+    system.begin(Stage { x_t0, base, h });
     system.springs.springs = constraints.springs;
     let mut target: Vec<World3> = base.iter().zip(velocity).map(|(x, v)| x + v * h).collect();
     let mut resting = x_t0.to_vec();

@@ -1,0 +1,42 @@
+//! What a scene does not need is not built, and the report of every frame says so.
+
+use organza::scene::{self, LoadOptions};
+use organza::world::World;
+
+fn world(extra: &str) -> World {
+    let text = format!(
+        r#"{{ frames: 2, frames_per_second: 25, substeps: 1, {extra}
+          cloths: [{{ mesh: {{ grid: {{ size_m: [0.2, 0.2], cells: [3, 3] }} }},
+                      fabric: "woven-light" EXTRA_CLOTH }}] }}"#
+    );
+    let text = match extra {
+        "" => text.replace("EXTRA_CLOTH", ""),
+        _ => text.replace(
+            "EXTRA_CLOTH",
+            ", strain_limits: [0.9, 1.1], remeshing: { size_m: { min: 0.02, max: 0.1 } }",
+        ),
+    };
+    let options = LoadOptions::default();
+    let loaded = scene::parse(text, "scene.json5", &options, &scene::from_sources(&[])).unwrap();
+    World::new(&loaded).unwrap()
+}
+
+#[test]
+fn absent_parts_are_absent() {
+    let mut bare = world("");
+    assert_eq!(bare.force_names(), ["membrane", "bending", "gravity"]);
+    let report = bare.advance().unwrap();
+    for stage in ["remeshing", "wind", "strain limits", "handles"] {
+        assert!(report.skipped.iter().any(|s| s.contains(stage)), "{stage}: {:?}", report.skipped);
+    }
+    assert!(report.remesh.is_none());
+    assert_eq!((report.seconds.sizing, report.seconds.remesh), (0.0, 0.0));
+
+    let mut full = world(
+        r#"wind: { velocity: [1, 0, 0] }, handles: [{ select: { corners: ["lower-left"] } }],"#,
+    );
+    assert_eq!(full.force_names(), ["membrane", "bending", "strain limits", "wind", "gravity"]);
+    let report = full.advance().unwrap();
+    assert!(report.skipped.is_empty(), "{:?}", report.skipped);
+    assert!(report.remesh.is_some());
+}
