@@ -33,9 +33,9 @@ impl<const N: usize> ElementSystem<N> {
 /// Which second derivative is wanted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stiffness {
-    /// The exact Hessian, for checks; may be indefinite.
+    /// The exact Hessian; may be indefinite.
     Exact,
-    /// Positive semi-definite, for the solver.
+    /// Positive semi-definite.
     Projected,
 }
 
@@ -52,10 +52,6 @@ pub trait ElementModel<const N: usize>: Send + Sync {
 
     /// Takes what the projected stiffness lags from the linear prediction at `x + step` (m).
     fn predict(&mut self, x: &[World3], step: &[World3]);
-
-    /// By how much the gradient (N) at `trial` exceeds the prediction, in the directions of `x`;
-    /// `None` for a model that is not stiff.
-    fn remainder(&self, e: usize, x: &[World3; N], trial: &[World3; N]) -> Option<[World3; N]>;
 
     /// Energy of element `e` (J) with its corners at `x` (m). Absent corners are at the origin.
     fn energy(&self, e: usize, x: &[World3; N]) -> f64;
@@ -74,9 +70,11 @@ pub struct Elements<M, const N: usize> {
     slots: Option<StencilSlots<N>>,
 }
 
-/// Elements whose systems are computed side by side before they are added in order: small enough
-/// to stay in the cache.
-const BATCH: usize = 256;
+/// Elements whose systems are computed side by side before they are added in order: few enough to
+/// stay in the cache, and for one thread in the innermost. The sum is the same for any number.
+pub(crate) fn batch() -> usize {
+    if par::n_threads() > 1 { 256 } else { 8 }
+}
 
 impl<M: ElementModel<N>, const N: usize> Elements<M, N> {
     /// All elements of a model.
@@ -118,15 +116,6 @@ impl<M: ElementModel<N>, const N: usize> Force for Elements<M, N> {
         self.model.predict(x, step);
     }
 
-    fn add_remainder(&self, x: &[World3], trial: &[World3], gradient: &mut [World3]) {
-        for e in 0..self.model.stencils().len() {
-            let (x, trial) = (self.corners(e, x), self.corners(e, trial));
-            if let Some(remainder) = self.model.remainder(e, &x, &trial) {
-                self.scatter(e, &remainder, gradient);
-            }
-        }
-    }
-
     fn energy(&self, x: &[World3]) -> f64 {
         let n = self.model.stencils().len();
         par::sum(n, |e| self.model.energy(e, &self.corners(e, x)))
@@ -134,9 +123,10 @@ impl<M: ElementModel<N>, const N: usize> Force for Elements<M, N> {
 
     fn add_gradient(&self, x: &[World3], gradient: &mut [World3]) {
         let n = self.model.stencils().len();
-        let mut batch = vec![[World3::zeros(); N]; n.min(8 * BATCH)];
-        for first in (0..n).step_by(8 * BATCH) {
-            let count = (n - first).min(8 * BATCH);
+        let size = 8 * batch();
+        let mut batch = vec![[World3::zeros(); N]; n.min(size)];
+        for first in (0..n).step_by(size) {
+            let count = (n - first).min(size);
             par::fill(&mut batch[..count], |k| {
                 self.model.gradient(first + k, &self.corners(first + k, x))
             });
@@ -146,15 +136,22 @@ impl<M: ElementModel<N>, const N: usize> Force for Elements<M, N> {
         }
     }
 
-    fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {
+    fn add_system(
+        &self,
+        x: &[World3],
+        kind: Stiffness,
+        gradient: &mut [World3],
+        stiffness: &mut BlockMatrix,
+    ) {
         let slots = self.slots.as_ref().expect("bind() comes before add_system()");
         let n = self.model.stencils().len();
-        let mut batch = vec![ElementSystem::<N>::zero(); n.min(BATCH)];
-        for first in (0..n).step_by(BATCH) {
-            let count = (n - first).min(BATCH);
+        let size = batch();
+        let mut batch = vec![ElementSystem::<N>::zero(); n.min(size)];
+        for first in (0..n).step_by(size) {
+            let count = (n - first).min(size);
             par::for_each(&mut batch[..count], |k, out| {
                 let e = first + k;
-                self.model.system(e, &self.corners(e, x), Stiffness::Projected, out);
+                self.model.system(e, &self.corners(e, x), kind, out);
             });
             for (k, system) in batch[..count].iter().enumerate() {
                 if system.active {

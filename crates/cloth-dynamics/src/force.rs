@@ -1,5 +1,6 @@
 //! What the solver sees of the physics: potentials of the positions.
 
+use crate::element::Stiffness;
 use crate::solver::{BlockMatrix, BlockPattern, PatternBuilder, PatternError};
 use mesh_core::World3;
 
@@ -37,16 +38,19 @@ pub trait Force: Send + Sync {
     /// linear prediction at `x + step`.
     fn predict(&mut self, x: &[World3], step: &[World3]);
 
-    /// Adds the forces (N, as a gradient) by which the true stress at `trial` exceeds what
-    /// [`Force::predict`] expected there, in the directions they have at `x`.
-    fn add_remainder(&self, x: &[World3], trial: &[World3], gradient: &mut [World3]);
-
     /// Energy (J).
     fn energy(&self, x: &[World3]) -> f64;
 
     /// Adds the gradient of the energy (N).
     fn add_gradient(&self, x: &[World3], gradient: &mut [World3]);
 
-    /// Adds gradient (N) and projected stiffness (N/m).
-    fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix);
+    /// Adds gradient (N) and stiffness (N/m). What is called exact may leave out couplings that are
+    /// small beside inertia in a step.
+    fn add_system(
+        &self,
+        x: &[World3],
+        kind: Stiffness,
+        gradient: &mut [World3],
+        stiffness: &mut BlockMatrix,
+    );
 }

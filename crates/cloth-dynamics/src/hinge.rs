@@ -59,10 +59,6 @@ impl ElementModel<4> for HingeModel {
 
     fn predict(&mut self, _: &[World3], _: &[World3]) {}
 
-    fn remainder(&self, _: usize, _: &[World3; 4], _: &[World3; 4]) -> Option<[World3; 4]> {
-        None
-    }
-
     fn energy(&self, e: usize, x: &[World3; 4]) -> f64 {
         let theta = geometry::dihedral_angle(x[0], x[1], x[2], x[3]);
         0.5 * self.stiffness[e] * theta * theta

@@ -24,7 +24,7 @@
 //!     damping: Damping::default(),
 //! };
 //! let environment = Environment { gravity: World3::new(0.0, 0.0, -9.81), wind: None };
-//! let mut system = System::new(&cloth, &Arc::new(vec![cotton]), &environment)?;
+//! let mut system = System::new(&cloth, &Arc::new(vec![cotton]), &environment, 0.01)?;
 //! let mut solver = Auto::new(LinearSettings::default());
 //!
 //! let corner = cloth.x[0];
@@ -48,6 +48,7 @@
 //! - No clock decides anything: results are the same bits in every run.
 #![forbid(unsafe_code)]
 
+mod bending;
 mod dihedral;
 mod element;
 mod fabric;
@@ -62,6 +63,7 @@ mod rest;
 mod shape_operator;
 pub mod solver;
 mod strain_limit;
+mod strain_projection;
 mod system;
 mod wind;
 

@@ -60,6 +60,14 @@ impl MembraneModel {
         (self.damped && eta > 0.0).then(|| fabric.membrane.at_rest() * (eta / self.h))
     }
 
+    fn stress(&self, e: usize, strain: &Vector3<f64>) -> Vector3<f64> {
+        let stress = self.fabric(e).membrane.stress(strain);
+        match self.viscosity(e) {
+            Some(viscosity) => stress + viscosity * (strain - self.strain_t0[e]),
+            None => stress,
+        }
+    }
+
     fn response(&self, e: usize, strain: &Vector3<f64>) -> Response {
         let mut response = self.fabric(e).membrane.response(strain);
         if let Some(viscosity) = self.viscosity(e) {
@@ -79,7 +87,7 @@ fn tensor(s: &Vector3<f64>) -> Matrix2<f64> {
 pub(crate) fn positive_part(s: &Matrix2<f64>) -> Matrix2<f64> {
     let mean = 0.5 * (s[(0, 0)] + s[(1, 1)]);
     let half = 0.5 * (s[(0, 0)] - s[(1, 1)]);
-    let radius = half.hypot(s[(0, 1)]);
+    let radius = (half * half + s[(0, 1)] * s[(0, 1)]).sqrt();
     let (high, low) = (mean + radius, mean - radius);
     if low >= 0.0 {
         *s
@@ -121,7 +129,7 @@ impl ElementModel<3> for MembraneModel {
         let mut tension = std::mem::take(&mut self.tension);
         par::fill(&mut tension, |e| {
             let strain = strain(&self.rest, self.stencils[e], e);
-            self.fabric(e).membrane.response(&strain).stress
+            self.fabric(e).membrane.stress(&strain)
         });
         self.tension = tension;
     }
@@ -133,16 +141,9 @@ impl ElementModel<3> for MembraneModel {
             let f = self.rest[e].deformation_gradient(&stencil.map(|i| x[i as usize]));
             let df = self.rest[e].deformation_gradient(&stencil.map(|i| step[i as usize]));
             let strain = RestTriangle::green_strain(&f) + RestTriangle::strain_change(&f, &df);
-            self.response(e, &strain).stress
+            self.stress(e, &strain)
         });
         self.tension = tension;
-    }
-
-    fn remainder(&self, e: usize, x: &[World3; 3], trial: &[World3; 3]) -> Option<[World3; 3]> {
-        let rest = &self.rest[e];
-        let strain = RestTriangle::green_strain(&rest.deformation_gradient(trial));
-        let excess = self.response(e, &strain).stress - self.tension[e];
-        Some(spread(rest, &(rest.deformation_gradient(x) * tensor(&excess))))
     }
 
     fn energy(&self, e: usize, x: &[World3; 3]) -> f64 {
@@ -159,8 +160,8 @@ impl ElementModel<3> for MembraneModel {
     fn gradient(&self, e: usize, x: &[World3; 3]) -> [World3; 3] {
         let rest = &self.rest[e];
         let f = rest.deformation_gradient(x);
-        let response = self.response(e, &RestTriangle::green_strain(&f));
-        spread(rest, &(f * tensor(&response.stress)))
+        let stress = self.stress(e, &RestTriangle::green_strain(&f));
+        spread(rest, &(f * tensor(&stress)))
     }
 
     fn system(&self, e: usize, x: &[World3; 3], kind: Stiffness, out: &mut ElementSystem<3>) {

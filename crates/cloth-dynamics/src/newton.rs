@@ -6,6 +6,7 @@
 //! at any stiffness; stopping early costs accuracy, is allowed ("one iteration is the fast setting")
 //! and is always reported.
 
+use crate::element::Stiffness;
 use crate::solver::{LinearError, LinearReport, LinearSolver, clear_fixed};
 use crate::system::System;
 use mesh_core::{World3, par};
@@ -38,10 +39,8 @@ pub struct SolveReport {
     pub factorisations: usize,
     /// Symbolic analyses.
     pub analyses: usize,
-    /// Halvings of a step in the line search.
+    /// Halvings of a step that did not lower the potential.
     pub halvings: usize,
-    /// Second-order corrections in the line search.
-    pub corrections: usize,
     /// Solved stages.
     pub stages: usize,
     /// Stages that stopped before they reached the tolerance.
@@ -64,7 +63,6 @@ impl SolveReport {
         self.factorisations += other.factorisations;
         self.analyses += other.analyses;
         self.halvings += other.halvings;
-        self.corrections += other.corrections;
         self.stages += other.stages;
         self.unconverged += other.unconverged;
         self.residual = self.residual.max(other.residual);
@@ -129,39 +127,131 @@ impl Inertia<'_> {
 const SUFFICIENT: f64 = 1e-4;
 /// The most halvings before a direction is given up.
 const MAX_HALVINGS: usize = 30;
-/// The most second-order corrections of one trial.
-const MAX_CORRECTIONS: usize = 3;
-/// Shorter steps are not corrected: they hardly turn anything.
-const LEAST_CORRECTED: f64 = 0.25;
+/// Full steps in a row that may raise the potential before the best point is returned to.
+const WATCH: usize = 2;
+/// An iteration that leaves a greater share of the residual than this is slow.
+const SLOW: f64 = 0.3;
+/// The first iterations are never made with the exact Hessian: they are far from its validity.
+const PROJECTED_ITERATIONS: usize = 3;
 
-/// Minimises the incremental potential from the better of the given starts.
+/// Stages that start at rest unasked after one that did so by choice.
+const REST_STARTS: u32 = 7;
+/// Iterations are allowed up to this multiple of the limit while triangles are out of their strain
+/// limits.
+const LIMIT_PATIENCE: usize = 3;
+
+/// The lowest point so far, kept while steps that raise the potential are on trial.
+#[derive(Default)]
+struct Watchdog {
+    /// Steps since then.
+    age: usize,
+    phi: f64,
+    /// Slope of the potential along `direction`.
+    slope: f64,
+    x: Vec<World3>,
+    direction: Vec<World3>,
+}
+
+/// A minimisation on its way.
+struct Newton<'a> {
+    system: &'a mut System,
+    solver: &'a mut dyn LinearSolver,
+    inertia: &'a Inertia<'a>,
+    settings: &'a NewtonSettings,
+    report: SolveReport,
+    x: Vec<World3>,
+    phi: f64,
+    trial: Vec<World3>,
+    lowest: Watchdog,
+    kind: Stiffness,
+    /// The exact Hessian was not positive definite.
+    exact_failed: bool,
+    converged: bool,
+    /// No descent is left within rounding.
+    stuck: bool,
+}
+
+/// Minimises the incremental potential from the better of two starts: at rest where the step begins,
+/// or where inertia alone would lead.
+///
+/// A Newton step that turns stiff cloth by an angle θ stretches it by θ²/2. The next step takes that
+/// back, but a line search would not let it come so far, and creep (the Maratos effect). So full
+/// steps are made on trial, and only if a few of them end above the lowest point so far are they
+/// taken back, to follow the direction from there by halves (the watchdog, Nocedal2006 §15.6).
+/// No point above a start is ever returned.
 pub(crate) fn minimise(
     system: &mut System,
     solver: &mut dyn LinearSolver,
     inertia: &Inertia<'_>,
-    starts: &[Vec<World3>],
+    starts: &[Vec<World3>; 2],
     settings: &NewtonSettings,
 ) -> Result<(Vec<World3>, SolveReport), SolveError> {
-    let (h, time) = (inertia.h, inertia.time);
-    let mut report = SolveReport { stages: 1, ..Default::default() };
     let clock = Instant::now();
-    let valued = starts.iter().map(|x| (inertia.potential(system, x), x));
-    let best =
-        valued.filter(|(phi, _)| phi.is_finite()).reduce(|a, b| if b.0 < a.0 { b } else { a });
-    let (mut phi, mut x) = match best {
-        Some((phi, x)) => (phi, x.clone()),
-        None => return Err(SolveError::NotFinite { time, h }),
+    let (x, phi) = choose_start(system, inertia, starts)?;
+    let energy_s = clock.elapsed().as_secs_f64();
+    let report = SolveReport { stages: 1, residual: f64::INFINITY, energy_s, ..Default::default() };
+    let mut newton = Newton {
+        trial: vec![World3::zeros(); x.len()],
+        lowest: Watchdog::default(),
+        kind: Stiffness::Projected,
+        exact_failed: false,
+        converged: false,
+        stuck: false,
+        system,
+        solver,
+        inertia,
+        settings,
+        report,
+        x,
+        phi,
     };
-    report.energy_s += clock.elapsed().as_secs_f64();
+    let mut budget = settings.max_iterations;
+    loop {
+        while newton.report.iterations < budget && !newton.converged && !newton.stuck {
+            newton.iterate(newton.report.iterations + 1 == budget)?;
+        }
+        let in_bounds = newton.respect_limits();
+        let patience = newton.report.iterations < LIMIT_PATIENCE * settings.max_iterations;
+        if in_bounds || newton.converged || newton.stuck || !patience {
+            break;
+        }
+        budget = newton.report.iterations + 1;
+    }
+    newton.report.unconverged = usize::from(!newton.converged);
+    Ok((newton.x, newton.report))
+}
 
-    let n = x.len();
-    let mut direction = vec![World3::zeros(); n];
-    let mut trial = vec![World3::zeros(); n];
-    let mut converged = false;
-    while report.iterations < settings.max_iterations && !converged {
+/// The start and its potential.
+fn choose_start(
+    system: &mut System,
+    inertia: &Inertia<'_>,
+    [resting, ballistic]: &[Vec<World3>; 2],
+) -> Result<(Vec<World3>, f64), SolveError> {
+    let phi = inertia.potential(system, resting);
+    // One step resembles the next: where it is better to start at rest, the other start is looked at
+    // only now and then.
+    if system.rests > 0 && phi.is_finite() {
+        system.rests -= 1;
+        return Ok((resting.clone(), phi));
+    }
+    let other = inertia.potential(system, ballistic);
+    if other < phi || (other.is_finite() && !phi.is_finite()) {
+        Ok((ballistic.clone(), other))
+    } else if phi.is_finite() {
+        system.rests = REST_STARTS;
+        Ok((resting.clone(), phi))
+    } else {
+        Err(SolveError::NotFinite { time: inertia.time, h: inertia.h })
+    }
+}
+
+impl Newton<'_> {
+    /// One linear solve and the step that it leads to; the last one is not made on trial.
+    fn iterate(&mut self, is_last: bool) -> Result<(), SolveError> {
+        let (h, time, n) = (self.inertia.h, self.inertia.time, self.x.len());
         let clock = Instant::now();
-        let mut rhs = assemble(system, inertia, &x);
-        report.assembly_s += clock.elapsed().as_secs_f64();
+        let mut rhs = assemble(self.system, self.inertia, &self.x, self.kind);
+        self.report.assembly_s += clock.elapsed().as_secs_f64();
         if !rhs.iter().all(|g| g.iter().all(|c| c.is_finite())) {
             return Err(SolveError::NotFinite { time, h });
         }
@@ -170,107 +260,126 @@ pub(crate) fn minimise(
         for g in &mut rhs {
             *g = -*g;
         }
-        direction.fill(World3::zeros());
-        let linear = solver
-            .solve(&system.matrix, &rhs, &mut direction)
+        let mut direction = vec![World3::zeros(); n];
+        let linear = self
+            .solver
+            .solve(&self.system.matrix, &rhs, &mut direction)
             .map_err(|source| SolveError::Linear { time, source })?;
-        report.note(&linear);
-        report.linear_s += clock.elapsed().as_secs_f64();
-        report.iterations += 1;
+        self.report.note(&linear);
+        self.report.linear_s += clock.elapsed().as_secs_f64();
+        self.report.iterations += 1;
 
         let clock = Instant::now();
-        let slope = -par::sum(n, |i| rhs[i].dot(&direction[i]));
         let largest = direction.iter().map(|d| d.norm_squared()).fold(0.0, f64::max).sqrt();
-        report.residual = largest / h;
-        converged = report.residual <= settings.tolerance;
-        // Below this a change of Φ is rounding.
-        let noise = 1e-13 * phi.abs();
-        let mut share = 1.0;
-        let mut accepted = None;
-        let linear_before = report.linear_s;
-        for _ in 0..=MAX_HALVINGS {
-            let bound = phi + SUFFICIENT * share * slope + noise;
-            // What is predicted, corrected and lagged is the step as it is tried.
-            system.predict(&x, &direction);
-            par::fill(&mut trial, |i| x[i] + direction[i]);
-            let mut value = inertia.potential(system, &trial);
-            let mut corrections = 0;
-            let fits = |value: f64| value <= bound;
-            while !fits(value) && share >= LEAST_CORRECTED && corrections < MAX_CORRECTIONS {
-                let before = value;
-                value = correct(system, solver, inertia, &x, &mut trial, &mut report)?;
-                corrections += 1;
-                // Give up on a correction that does not at least halve the excess.
-                let halved = value - bound <= 0.5 * (before - bound);
-                if !halved {
-                    break;
-                }
-            }
-            if fits(value) {
-                accepted = Some(value);
-                break;
-            }
-            share *= 0.5;
-            par::for_each(&mut direction, |_, d| *d *= 0.5);
-            report.halvings += 1;
-        }
-        report.energy_s += clock.elapsed().as_secs_f64() - (report.linear_s - linear_before);
-        let Some(value) = accepted else {
-            // No descent left within rounding: report it instead of going in circles.
-            converged = false;
-            break;
-        };
-        std::mem::swap(&mut x, &mut trial);
-        phi = value;
-        converged &= share == 1.0;
+        let before = std::mem::replace(&mut self.report.residual, largest / h);
+        // The step of a matrix that had to be shifted says nothing about how far it is to go.
+        let shifted = linear.shift > 0.0;
+        let is_short = self.report.residual <= self.settings.tolerance && !shifted;
+        let slope = -par::sum(n, |i| rhs[i].dot(&direction[i]));
+        let is_full = self.advance(direction, slope, is_last);
+        self.report.energy_s += clock.elapsed().as_secs_f64();
+        let is_lower = self.lowest.age == 0;
+        self.converged = is_short && is_full && is_lower;
+
+        // Where cloth buckles, the projected Hessian is too stiff, and the last vertices would
+        // creep; near the minimum the exact one is positive definite.
+        self.exact_failed |= shifted;
+        let is_slow = self.kind == Stiffness::Exact || self.report.residual > SLOW * before;
+        let is_near = self.report.iterations >= PROJECTED_ITERATIONS && is_full && is_lower;
+        let is_exact = is_slow && is_near && !self.exact_failed;
+        self.kind = if is_exact { Stiffness::Exact } else { Stiffness::Projected };
+        Ok(())
     }
-    report.unconverged = usize::from(!converged);
-    Ok((x, report))
+
+    /// Makes the step; false if not in full.
+    fn advance(&mut self, direction: Vec<World3>, slope: f64, is_last: bool) -> bool {
+        let x = &self.x;
+        self.system.predict(x, &direction);
+        par::fill(&mut self.trial, |i| x[i] + direction[i]);
+        if self.lowest.age == 0 {
+            self.lowest.phi = self.phi;
+            self.lowest.slope = slope;
+            self.lowest.x.clone_from(x);
+            self.lowest.direction = direction;
+        }
+        self.phi = self.inertia.potential(self.system, &self.trial);
+        let lowest = &mut self.lowest;
+        if self.phi <= lowest.phi + SUFFICIENT * lowest.slope + noise(lowest.phi) {
+            lowest.age = 0;
+        } else if self.phi.is_finite() && lowest.age < WATCH && !is_last {
+            lowest.age += 1;
+        } else {
+            self.halve();
+            return false;
+        }
+        std::mem::swap(&mut self.x, &mut self.trial);
+        true
+    }
+
+    /// Returns to the lowest point and follows its direction by halves until the potential has fallen
+    /// enough; stays there if it does not.
+    fn halve(&mut self) {
+        let lowest = &mut self.lowest;
+        let mut share = 1.0;
+        lowest.age = 0;
+        for _ in 0..MAX_HALVINGS {
+            share *= 0.5;
+            par::for_each(&mut lowest.direction, |_, d| *d *= 0.5);
+            self.report.halvings += 1;
+            self.system.predict(&lowest.x, &lowest.direction);
+            par::fill(&mut self.trial, |i| lowest.x[i] + lowest.direction[i]);
+            self.phi = self.inertia.potential(self.system, &self.trial);
+            if self.phi <= lowest.phi + SUFFICIENT * share * lowest.slope + noise(lowest.phi) {
+                std::mem::swap(&mut self.x, &mut self.trial);
+                return;
+            }
+        }
+        self.x.clone_from(&lowest.x);
+        self.phi = lowest.phi;
+        self.stuck = true;
+    }
+
+    /// Brings triangles back that are out of their strain limits, where that lowers the potential;
+    /// false if some are left.
+    fn respect_limits(&mut self) -> bool {
+        let Some(limits) = &mut self.system.limits else { return true };
+        let clock = Instant::now();
+        let Inertia { mass, fixed, .. } = *self.inertia;
+        let mass = |i: u32| if fixed[i as usize] { f64::INFINITY } else { mass[i as usize] };
+        self.trial.copy_from_slice(&self.x);
+        let in_bounds = match limits.project(&mut self.trial, &mass) {
+            None => true,
+            Some(all) => {
+                let phi = self.inertia.potential(self.system, &self.trial);
+                let is_lower = phi <= self.phi + noise(self.phi);
+                if is_lower {
+                    std::mem::swap(&mut self.x, &mut self.trial);
+                    self.phi = phi;
+                }
+                is_lower && all
+            }
+        };
+        self.report.energy_s += clock.elapsed().as_secs_f64();
+        in_bounds
+    }
 }
 
-/// Second-order correction of a trial (Nocedal2006 §15.6): takes the stress away that is there only
-/// because the step was straight; returns the new potential.
-///
-/// A Newton step that turns stiff cloth by an angle θ stretches it by θ²/2, and on the curved valley
-/// of stiff energies a line search alone would then creep (the Maratos effect). The factor is there
-/// already, and the stretch is what it knows best. The excess stress acts in the directions it has at
-/// `x`: those of the trial are turned, and their error would push along the soft valley.
-fn correct(
-    system: &System,
-    solver: &mut dyn LinearSolver,
+/// Changes of a potential below this are rounding (J).
+fn noise(phi: f64) -> f64 {
+    1e-13 * phi.abs()
+}
+
+/// Sets the matrix to the Hessian of Φ with fixed vertices taken out; returns ∇Φ.
+fn assemble(
+    system: &mut System,
     inertia: &Inertia<'_>,
     x: &[World3],
-    trial: &mut [World3],
-    report: &mut SolveReport,
-) -> Result<f64, SolveError> {
-    let mut rhs = system.remainder(x, trial);
-    for g in &mut rhs {
-        *g = -*g;
-    }
-    clear_fixed(&mut rhs, inertia.fixed);
-    if !rhs.iter().all(|g| g.iter().all(|c| c.is_finite())) {
-        return Ok(f64::NAN);
-    }
-    let clock = Instant::now();
-    let mut step = vec![World3::zeros(); trial.len()];
-    let linear = solver
-        .solve_again(&system.matrix, &rhs, &mut step)
-        .map_err(|source| SolveError::Linear { time: inertia.time, source })?;
-    report.note(&linear);
-    report.corrections += 1;
-    report.linear_s += clock.elapsed().as_secs_f64();
-    for (x, d) in trial.iter_mut().zip(&step) {
-        *x += d;
-    }
-    Ok(inertia.potential(system, trial))
-}
-
-/// Sets the matrix to the projected Hessian of Φ with fixed vertices taken out; returns ∇Φ.
-fn assemble(system: &mut System, inertia: &Inertia<'_>, x: &[World3]) -> Vec<World3> {
+    kind: Stiffness,
+) -> Vec<World3> {
     let scale = 1.0 / (inertia.h * inertia.h);
     let mut gradient: Vec<World3> = vec![World3::zeros(); x.len()];
     par::fill(&mut gradient, |i| (x[i] - inertia.target[i]) * (inertia.mass[i] * scale));
-    system.assemble(x, &mut gradient);
+    system.assemble(x, kind, &mut gradient);
     for (i, m) in inertia.mass.iter().enumerate() {
         *system.matrix.diagonal_mut(i) += Matrix3::identity() * (m * scale);
     }

@@ -1,5 +1,6 @@
 //! Forces on single vertices: gravity, mass-proportional damping, springs to handles.
 
+use crate::element::Stiffness;
 use crate::force::{Force, Stage};
 use crate::solver::{BlockMatrix, BlockPattern, PatternBuilder, PatternError};
 use mesh_core::{World3, par};
@@ -34,8 +35,6 @@ impl Force for Gravity {
 
     fn predict(&mut self, _: &[World3], _: &[World3]) {}
 
-    fn add_remainder(&self, _: &[World3], _: &[World3], _: &mut [World3]) {}
-
     fn energy(&self, x: &[World3]) -> f64 {
         -par::sum(x.len(), |i| self.masses[i] * self.acceleration.dot(&x[i]))
     }
@@ -46,7 +45,13 @@ impl Force for Gravity {
         }
     }
 
-    fn add_system(&self, x: &[World3], gradient: &mut [World3], _: &mut BlockMatrix) {
+    fn add_system(
+        &self,
+        x: &[World3],
+        _: Stiffness,
+        gradient: &mut [World3],
+        _: &mut BlockMatrix,
+    ) {
         self.add_gradient(x, gradient);
     }
 }
@@ -87,8 +92,6 @@ impl Force for MassDamping {
 
     fn predict(&mut self, _: &[World3], _: &[World3]) {}
 
-    fn add_remainder(&self, _: &[World3], _: &[World3], _: &mut [World3]) {}
-
     fn energy(&self, x: &[World3]) -> f64 {
         par::sum(x.len(), |i| self.rates[i] * (x[i] - self.base[i]).norm_squared()) / (2.0 * self.h)
     }
@@ -99,7 +102,13 @@ impl Force for MassDamping {
         }
     }
 
-    fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {
+    fn add_system(
+        &self,
+        x: &[World3],
+        _: Stiffness,
+        gradient: &mut [World3],
+        stiffness: &mut BlockMatrix,
+    ) {
         self.add_gradient(x, gradient);
         for (i, rate) in self.rates.iter().enumerate() {
             *stiffness.diagonal_mut(i) += Matrix3::identity() * (rate / self.h);
@@ -129,8 +138,6 @@ impl Force for Springs {
 
     fn predict(&mut self, _: &[World3], _: &[World3]) {}
 
-    fn add_remainder(&self, _: &[World3], _: &[World3], _: &mut [World3]) {}
-
     fn energy(&self, x: &[World3]) -> f64 {
         self.springs.iter().map(|&(i, p, k)| 0.5 * k * (x[i as usize] - p).norm_squared()).sum()
     }
@@ -141,7 +148,13 @@ impl Force for Springs {
         }
     }
 
-    fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {
+    fn add_system(
+        &self,
+        x: &[World3],
+        _: Stiffness,
+        gradient: &mut [World3],
+        stiffness: &mut BlockMatrix,
+    ) {
         self.add_gradient(x, gradient);
         for &(i, _, k) in &self.springs {
             *stiffness.diagonal_mut(i as usize) += Matrix3::identity() * k;

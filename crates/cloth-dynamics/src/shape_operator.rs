@@ -29,6 +29,8 @@ pub struct ShapeOperatorModel {
     triangles: Vec<u32>,
     /// Λ as (κ₁₁, κ₂₂, 2κ₁₂) is this matrix times the three angles (1/m).
     curvature_from_angles: Vec<Matrix3<f64>>,
+    /// Heights over the three edges, of the triangle itself and of its neighbour there (m).
+    heights: Vec<[[f64; 2]; 3]>,
     rest: Arc<Vec<RestTriangle>>,
     fabrics: Arc<Vec<Fabric>>,
     curvature_t0: Vec<Vector3<f64>>,
@@ -65,6 +67,7 @@ impl ShapeOperatorModel {
         let mut model = ShapeOperatorModel {
             stencils: vec![[ABSENT; 6]; triangles.len()],
             curvature_from_angles: vec![Matrix3::zeros(); triangles.len()],
+            heights: vec![[[0.0; 2]; 3]; triangles.len()],
             curvature_t0: if damped { vec![Vector3::zeros(); triangles.len()] } else { Vec::new() },
             triangles,
             rest,
@@ -77,6 +80,10 @@ impl ShapeOperatorModel {
             let law = model.law(e).at_rest();
             model.stencils[e] = stencil(mesh, t);
             model.curvature_from_angles[e] = curvature_from_angles(mesh, t, &law);
+            model.heights[e] = [0, 1, 2].map(|k| {
+                let h = t.half_edge(k);
+                [height(mesh, h), mesh.twin(h).map_or(0.0, |g| height(mesh, g))]
+            });
         }
         Some(model)
     }
@@ -85,7 +92,7 @@ impl ShapeOperatorModel {
         &self.fabrics[self.rest[self.triangles[e] as usize].panel as usize]
     }
 
-    fn law(&self, e: usize) -> &Bending {
+    pub(crate) fn law(&self, e: usize) -> &Bending {
         self.fabric(e).bending.as_ref().expect("only triangles that bend are listed")
     }
 
@@ -98,7 +105,12 @@ impl ShapeOperatorModel {
         (self.damped && eta > 0.0).then(|| self.law(e).at_rest() * (eta / self.h))
     }
 
-    fn response(&self, e: usize, curvature: &Vector3<f64>) -> Response {
+    /// Heights over edge `k` of the two triangles there (m); zero for one that is not there.
+    pub(crate) fn heights(&self, e: usize, k: usize) -> [f64; 2] {
+        self.heights[e][k]
+    }
+
+    pub(crate) fn response(&self, e: usize, curvature: &Vector3<f64>) -> Response {
         let mut response = self.law(e).response(curvature);
         if let Some(viscosity) = self.viscosity(e) {
             response.stress += viscosity * (curvature - self.curvature_t0[e]);
@@ -113,7 +125,47 @@ impl ShapeOperatorModel {
             let absent = self.stencils[e][3 + k] == ABSENT;
             if absent { 0.0 } else { geometry::dihedral_angle(a, b, c, d) }
         };
-        self.curvature_from_angles[e] * Vector3::new(angle(0), angle(1), angle(2))
+        self.curvature_of(e, &Vector3::new(angle(0), angle(1), angle(2)))
+    }
+
+    /// Curvature (1/m) of triangle `e` whose edges bend by these angles.
+    pub(crate) fn curvature_of(&self, e: usize, angles: &Vector3<f64>) -> Vector3<f64> {
+        self.curvature_from_angles[e] * angles
+    }
+
+    /// Energy (J) of triangle `e` at a curvature.
+    pub(crate) fn energy_of(&self, e: usize, curvature: &Vector3<f64>) -> f64 {
+        let mut energy = self.law(e).energy(curvature);
+        if let Some(viscosity) = self.viscosity(e) {
+            let change = curvature - self.curvature_t0[e];
+            energy += 0.5 * change.dot(&(viscosity * change));
+        }
+        energy * self.area(e)
+    }
+
+    /// Moments (J) on the three angles: A Cᵀ ψ′.
+    pub(crate) fn moments(&self, e: usize, stress: &Vector3<f64>) -> Vector3<f64> {
+        self.curvature_from_angles[e].tr_mul(stress) * self.area(e)
+    }
+
+    /// Stiffness (J) of the angles: G = A Cᵀ ψ″ C.
+    fn angle_stiffness(&self, e: usize, tangent: &Matrix3<f64>) -> Matrix3<f64> {
+        let c = &self.curvature_from_angles[e];
+        c.tr_mul(&(tangent * c)) * self.area(e)
+    }
+
+    /// Row sums of |G|: a diagonal that is at least as stiff (J).
+    pub(crate) fn lean_stiffness(&self, e: usize, tangent: &Matrix3<f64>) -> [f64; 3] {
+        let g = self.angle_stiffness(e, tangent).abs();
+        [0, 1, 2].map(|k| g.row(k).sum())
+    }
+
+    /// The tangent made positive semi-definite, if it is not by construction.
+    pub(crate) fn projected(&self, e: usize, tangent: &Matrix3<f64>) -> Matrix3<f64> {
+        match self.law(e) {
+            Bending::Orthotropic(_) => *tangent,
+            Bending::Measured(_) => project3(tangent),
+        }
     }
 
     /// Gradients of the three angles, zero where there is no neighbour.
@@ -129,7 +181,7 @@ impl ShapeOperatorModel {
 }
 
 /// Corners (a, b, c, d) of the hinge at half-edge `k`, as places in the stencil.
-const fn hinge(k: usize) -> [usize; 4] {
+pub(crate) const fn hinge(k: usize) -> [usize; 4] {
     [k, (k + 1) % 3, (k + 2) % 3, 3 + k]
 }
 
@@ -195,23 +247,13 @@ impl ElementModel<6> for ShapeOperatorModel {
 
     fn predict(&mut self, _: &[World3], _: &[World3]) {}
 
-    fn remainder(&self, _: usize, _: &[World3; 6], _: &[World3; 6]) -> Option<[World3; 6]> {
-        None
-    }
-
     fn energy(&self, e: usize, x: &[World3; 6]) -> f64 {
-        let curvature = self.curvature(e, x);
-        let mut energy = self.law(e).energy(&curvature);
-        if let Some(viscosity) = self.viscosity(e) {
-            let change = curvature - self.curvature_t0[e];
-            energy += 0.5 * change.dot(&(viscosity * change));
-        }
-        energy * self.area(e)
+        self.energy_of(e, &self.curvature(e, x))
     }
 
     fn gradient(&self, e: usize, x: &[World3; 6]) -> [World3; 6] {
         let response = self.response(e, &self.curvature(e, x));
-        let moment = self.curvature_from_angles[e].tr_mul(&response.stress) * self.area(e);
+        let moment = self.moments(e, &response.stress);
         let mut out = [World3::zeros(); 6];
         for (k, gradient) in self.angle_gradients(e, x).iter().enumerate() {
             for (i, g) in hinge(k).into_iter().zip(gradient) {
@@ -224,15 +266,13 @@ impl ElementModel<6> for ShapeOperatorModel {
     /// Exact: Σ_kl G_kl ∇θ_k ∇θ_lᵀ + Σ_k m_k ∇²θ_k with the moments m = A Cᵀψ′ and G = A Cᵀψ″C.
     /// Projected: the first sum with ψ″ clamped (Gauss–Newton); it is exact where the cloth is flat.
     fn system(&self, e: usize, x: &[World3; 6], kind: Stiffness, out: &mut ElementSystem<6>) {
-        let c = &self.curvature_from_angles[e];
-        let area = self.area(e);
         let response = self.response(e, &self.curvature(e, x));
-        let tangent = match (kind, self.law(e)) {
-            (Stiffness::Projected, Bending::Measured(_)) => project3(&response.tangent),
-            _ => response.tangent,
+        let tangent = match kind {
+            Stiffness::Projected => self.projected(e, &response.tangent),
+            Stiffness::Exact => response.tangent,
         };
-        let moment = c.tr_mul(&response.stress) * area;
-        let g = c.transpose() * tangent * c * area;
+        let moment = self.moments(e, &response.stress);
+        let g = self.angle_stiffness(e, &tangent);
         let gradients = self.angle_gradients(e, x);
 
         // Each angle's gradient over all six places, and their combinations Σ_l G_kl ∇θ_l.

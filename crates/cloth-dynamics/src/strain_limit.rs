@@ -11,7 +11,7 @@ use crate::element::{ElementModel, ElementSystem, Stiffness};
 use crate::fabric::{Fabric, StrainLimits};
 use crate::force::Stage;
 use crate::rest::RestTriangle;
-use mesh_core::{World3, par};
+use mesh_core::World3;
 use nalgebra::{Matrix2, Matrix3, Matrix3x2};
 use std::sync::Arc;
 
@@ -53,7 +53,7 @@ fn penalty(limits: &StrainLimits, sigma: f64) -> [f64; 3] {
 pub fn principal_stretches(f: &Matrix3x2<f64>) -> ([f64; 2], Matrix2<f64>) {
     let c = f.tr_mul(f);
     let half = 0.5 * (c[(0, 0)] - c[(1, 1)]);
-    let radius = half.hypot(c[(0, 1)]);
+    let radius = (half * half + c[(0, 1)] * c[(0, 1)]).sqrt();
     let mean = 0.5 * (c[(0, 0)] + c[(1, 1)]);
     // The smaller one from the area, which does not cancel.
     let high = (mean + radius).max(0.0).sqrt();
@@ -67,7 +67,7 @@ pub fn principal_stretches(f: &Matrix3x2<f64>) -> ([f64; 2], Matrix2<f64>) {
     } else {
         (c[(0, 1)].abs(), (radius - half).copysign(c[(0, 1)]))
     };
-    let n = x.hypot(y);
+    let n = (x * x + y * y).sqrt();
     let (x, y) = (x / n, y / n);
     ([high, low], Matrix2::new(x, -y, y, x))
 }
@@ -79,9 +79,10 @@ pub struct StrainLimitModel {
     triangles: Vec<u32>,
     rest: Arc<Vec<RestTriangle>>,
     fabrics: Arc<Vec<Fabric>>,
-    /// Predicted principal stretches for the geometric part of the projected stiffness (1); see
-    /// [`MembraneModel`](crate::MembraneModel).
-    predicted: Vec<[f64; 2]>,
+    /// The last step (m) and where it began, from which follow the predicted stretches for the
+    /// geometric part of the projected stiffness; see [`MembraneModel`](crate::MembraneModel).
+    from: Vec<World3>,
+    step: Vec<World3>,
 }
 
 impl StrainLimitModel {
@@ -97,7 +98,8 @@ impl StrainLimitModel {
         let stencils = limited.iter().map(|&t| triangles[t as usize]).collect();
         (!limited.is_empty()).then_some(StrainLimitModel {
             stencils,
-            predicted: vec![[1.0; 2]; limited.len()],
+            from: Vec::new(),
+            step: Vec::new(),
             triangles: limited,
             rest,
             fabrics,
@@ -111,11 +113,28 @@ impl StrainLimitModel {
     }
 }
 
+impl StrainLimitModel {
+    /// Principal stretches by the linear prediction of the last step (1).
+    fn predicted(&self, e: usize) -> [f64; 2] {
+        let (rest, stencil) = (self.element(e).0, self.stencils[e]);
+        let f = rest.deformation_gradient(&stencil.map(|i| self.from[i as usize]));
+        let df = rest.deformation_gradient(&stencil.map(|i| self.step[i as usize]));
+        let (sigma, v) = principal_stretches(&f);
+        let (fv, dfv) = (f * v, df * v);
+        // dσ = uᵀ dF v with u = F v/σ.
+        [0, 1].map(|k| {
+            let s = sigma[k].max(1e-9);
+            (sigma[k] + fv.column(k).dot(&dfv.column(k)) / s).max(0.0)
+        })
+    }
+}
+
 /// Cheap test on FᵀF whether both stretches are in the free range.
-fn is_free(limits: &StrainLimits, f: &Matrix3x2<f64>) -> bool {
+pub(crate) fn is_free(limits: &StrainLimits, f: &Matrix3x2<f64>) -> bool {
     let c = f.tr_mul(f);
     let mean = 0.5 * (c[(0, 0)] + c[(1, 1)]);
-    let radius = (0.5 * (c[(0, 0)] - c[(1, 1)])).hypot(c[(0, 1)]);
+    let half = 0.5 * (c[(0, 0)] - c[(1, 1)]);
+    let radius = (half * half + c[(0, 1)] * c[(0, 1)]).sqrt();
     let high = limits.max - BAND * (limits.max - 1.0);
     let low = limits.min + BAND * (1.0 - limits.min);
     mean + radius <= high * high && mean - radius >= low * low
@@ -131,45 +150,15 @@ impl ElementModel<3> for StrainLimitModel {
     }
 
     fn begin(&mut self, stage: Stage<'_>) {
-        let mut predicted = std::mem::take(&mut self.predicted);
-        par::fill(&mut predicted, |e| {
-            let x = self.stencils[e].map(|i| stage.x_t0[i as usize]);
-            principal_stretches(&self.element(e).0.deformation_gradient(&x)).0
-        });
-        self.predicted = predicted;
+        self.from.clear();
+        self.from.extend_from_slice(stage.x_t0);
+        self.step.clear();
+        self.step.resize(stage.x_t0.len(), World3::zeros());
     }
 
     fn predict(&mut self, x: &[World3], step: &[World3]) {
-        let mut predicted = std::mem::take(&mut self.predicted);
-        par::fill(&mut predicted, |e| {
-            let (rest, _) = self.element(e);
-            let f = rest.deformation_gradient(&self.stencils[e].map(|i| x[i as usize]));
-            let df = rest.deformation_gradient(&self.stencils[e].map(|i| step[i as usize]));
-            let (sigma, v) = principal_stretches(&f);
-            let (fv, dfv) = (f * v, df * v);
-            // dσ = uᵀ dF v with u = F v/σ.
-            [0, 1].map(|k| {
-                let s = sigma[k].max(1e-9);
-                (sigma[k] + fv.column(k).dot(&dfv.column(k)) / s).max(0.0)
-            })
-        });
-        self.predicted = predicted;
-    }
-
-    fn remainder(&self, e: usize, x: &[World3; 3], trial: &[World3; 3]) -> Option<[World3; 3]> {
-        let (rest, limits) = self.element(e);
-        let (sigma, _) = principal_stretches(&rest.deformation_gradient(trial));
-        let excess =
-            [0, 1].map(|k| penalty(limits, sigma[k])[1] - penalty(limits, self.predicted[e][k])[1]);
-        if excess == [0.0; 2] {
-            return None;
-        }
-        let f = rest.deformation_gradient(x);
-        let (stretches, v) = principal_stretches(&f);
-        let [u1, u2, _] = orthonormal(&(f * v), stretches);
-        let piola =
-            u1 * v.column(0).transpose() * excess[0] + u2 * v.column(1).transpose() * excess[1];
-        Some(rest.b.map(|b| piola * b * rest.area))
+        self.from.copy_from_slice(x);
+        self.step.copy_from_slice(step);
     }
 
     fn energy(&self, e: usize, x: &[World3; 3]) -> f64 {
@@ -207,7 +196,7 @@ impl ElementModel<3> for StrainLimitModel {
         // The loads of the geometric part: here, or where the last step was predicted to lead.
         let geometric = match kind {
             Stiffness::Exact => sigma,
-            Stiffness::Projected => self.predicted[e],
+            Stiffness::Projected => self.predicted(e),
         };
         let [g1, g2] = geometric.map(|s| penalty(limits, s));
         // A floor keeps the quotients finite on collapsed triangles.
@@ -241,7 +230,7 @@ impl ElementModel<3> for StrainLimitModel {
 }
 
 /// Left singular vectors and the normal, completed where F is degenerate.
-fn orthonormal(fv: &Matrix3x2<f64>, [s1, s2]: [f64; 2]) -> [World3; 3] {
+pub(crate) fn orthonormal(fv: &Matrix3x2<f64>, [s1, s2]: [f64; 2]) -> [World3; 3] {
     let u1 = if s1 > 1e-12 { fv.column(0).normalize() } else { World3::x() };
     let rest = fv.column(1) - u1 * u1.dot(&fv.column(1));
     let u2 = if s2 > 1e-9 * s1 && rest.norm() > 0.0 {

@@ -1,6 +1,7 @@
 //! All forces of a cloth and the system matrix they share: what exists is what the scene needs.
 
-use crate::element::Elements;
+use crate::bending::ShapeOperatorForce;
+use crate::element::{Elements, Stiffness};
 use crate::fabric::Fabric;
 use crate::force::{Force, Stage};
 use crate::hinge::HingeModel;
@@ -10,6 +11,7 @@ use crate::rest::RestTriangle;
 use crate::shape_operator::ShapeOperatorModel;
 use crate::solver::{BlockMatrix, PatternBuilder, PatternError};
 use crate::strain_limit::StrainLimitModel;
+use crate::strain_projection::StrainProjection;
 use crate::wind::{Wind, WindModel};
 use mesh_core::{ClothState, World3};
 use std::sync::Arc;
@@ -37,6 +39,10 @@ pub struct System {
     forces: Vec<Box<dyn Force>>,
     pub(crate) springs: Springs,
     pub(crate) matrix: BlockMatrix,
+    /// Stages to come that need not look for a better start than rest.
+    pub(crate) rests: u32,
+    /// Brings back what a step leaves out of its strain limits, if there are any.
+    pub(crate) limits: Option<StrainProjection>,
 }
 
 impl std::fmt::Debug for System {
@@ -47,6 +53,8 @@ impl std::fmt::Debug for System {
 
 impl System {
     /// Builds the forces that the fabrics and the environment call for, and the matrix pattern.
+    /// Steps will be about `h` long (s), which decides how finely the stiffness is worked out, never
+    /// what the forces are.
     ///
     /// # Errors
     /// If the matrix would be too large for its indices.
@@ -54,6 +62,7 @@ impl System {
         cloth: &ClothState,
         fabrics: &Arc<Vec<Fabric>>,
         environment: &Environment,
+        h: f64,
     ) -> Result<System, PatternError> {
         let mesh = &cloth.mesh;
         let triangles = mesh.triangles();
@@ -62,7 +71,7 @@ impl System {
         let membrane = MembraneModel::new(triangles, rest.clone(), fabrics.clone());
         forces.push(Box::new(Elements::new(membrane)));
         if let Some(m) = ShapeOperatorModel::new(mesh, rest.clone(), fabrics.clone()) {
-            forces.push(Box::new(Elements::new(m)));
+            forces.push(Box::new(ShapeOperatorForce::new(m, &cloth.m, h)));
         }
         if let Some(m) = HingeModel::new(mesh, fabrics) {
             forces.push(Box::new(Elements::new(m)));
@@ -70,6 +79,7 @@ impl System {
         if let Some(m) = StrainLimitModel::new(triangles, rest.clone(), fabrics.clone()) {
             forces.push(Box::new(Elements::new(m)));
         }
+        let limits = StrainProjection::new(triangles, rest.clone(), fabrics.clone());
         if let Some(wind) = environment.wind {
             forces.push(Box::new(Elements::new(WindModel::new(triangles, wind))));
         }
@@ -88,7 +98,7 @@ impl System {
         for force in &mut forces {
             force.bind(matrix.pattern());
         }
-        Ok(System { forces, springs: Springs::default(), matrix })
+        Ok(System { forces, springs: Springs::default(), matrix, rests: 0, limits })
     }
 
     /// Names of the forces that exist.
@@ -126,22 +136,13 @@ impl System {
         }
     }
 
-    /// Forces beyond the prediction at `trial`, in the directions of `x` (N, as a gradient).
-    pub(crate) fn remainder(&self, x: &[World3], trial: &[World3]) -> Vec<World3> {
-        let mut gradient = vec![World3::zeros(); x.len()];
-        for force in &self.forces {
-            force.add_remainder(x, trial, &mut gradient);
-        }
-        gradient
-    }
-
-    /// Sets the matrix to the projected stiffness and adds the gradient.
-    pub(crate) fn assemble(&mut self, x: &[World3], gradient: &mut [World3]) {
+    /// Sets the matrix to the stiffness and adds the gradient.
+    pub(crate) fn assemble(&mut self, x: &[World3], kind: Stiffness, gradient: &mut [World3]) {
         self.matrix.set_zero();
         for force in &self.forces {
-            force.add_system(x, gradient, &mut self.matrix);
+            force.add_system(x, kind, gradient, &mut self.matrix);
         }
-        self.springs.add_system(x, gradient, &mut self.matrix);
+        self.springs.add_system(x, kind, gradient, &mut self.matrix);
     }
 }
 

@@ -90,10 +90,6 @@ impl ElementModel<3> for WindModel {
 
     fn predict(&mut self, _: &[World3], _: &[World3]) {}
 
-    fn remainder(&self, _: usize, _: &[World3; 3], _: &[World3; 3]) -> Option<[World3; 3]> {
-        None
-    }
-
     fn energy(&self, e: usize, x: &[World3; 3]) -> f64 {
         let (n, t) = self.relative(e, x);
         let rate =

@@ -406,28 +406,6 @@ fn matrix_like(pattern: &BlockMatrix, numbers: &BlockMatrix) -> BlockMatrix {
 }
 
 #[test]
-fn a_second_right_hand_side_needs_no_second_factor() {
-    let mut random = Random(16);
-    let (b, c) = (random.vectors(900), random.vectors(900));
-    for kind in KINDS {
-        for stiffness in [0.1, 1e4] {
-            let matrix = cloth(30, stiffness, 0.3);
-            let mut solver = kind.build(LinearSettings::default());
-            let (_, first) = solve(&mut *solver, &matrix, &b);
-            let mut x = vec![Vector3::zeros(); 900];
-            let report = solver.solve_again(&matrix, &c, &mut x).unwrap();
-            assert!(residual(&matrix, &c, &x) < 1.01e-6, "{kind:?}: {report:?}");
-            assert!(!report.refactored && !report.analysed, "{kind:?}: {report:?}");
-            assert!(!first.refactored || report.iterations <= 3, "{kind:?}: {report:?}");
-            // Without a call before, it is a call like any other.
-            let mut y = vec![Vector3::zeros(); 900];
-            kind.build(LinearSettings::default()).solve_again(&matrix, &c, &mut y).unwrap();
-            assert!(residual(&matrix, &c, &y) < 1.01e-6, "{kind:?}");
-        }
-    }
-}
-
-#[test]
 fn a_pattern_is_analysed_once() {
     let b = Random(11).vectors(64);
     for kind in [SolverKind::SparseCholesky, SolverKind::StaleFactorCg] {

@@ -13,6 +13,7 @@ use std::time::Instant;
 pub struct Remeshing {
     sizing: PerPanel<PhysicalSizing>,
     fixed_panels: Vec<u32>,
+    stretch_limits: Vec<[f64; 2]>,
     aspect_min: f64,
     hysteresis: f64,
     max_vertices: usize,
@@ -24,6 +25,7 @@ impl Remeshing {
         let mut policy = Remeshing {
             sizing: PerPanel { fields: Vec::new() },
             fixed_panels: Vec::new(),
+            stretch_limits: Vec::new(),
             aspect_min: 1.0,
             hysteresis: 0.0,
             max_vertices: 0,
@@ -48,6 +50,8 @@ impl Remeshing {
                     }
                 }
             };
+            let limits = cloth.strain_limits.unwrap_or([0.9,1.1]);
+            policy.stretch_limits.extend(garment.panels.clone().map(|_| limits));
             policy.sizing.fields.extend(garment.panels.clone().map(|_| field));
         }
         scene.cloths.iter().any(|c| c.remeshing.is_some()).then_some(policy)
@@ -68,6 +72,7 @@ impl Remeshing {
             max_vertices: self.max_vertices,
             keep,
             fixed_panels: &self.fixed_panels,
+            stretch_limits: &self.stretch_limits,
             obstacle: None,
         };
         let clock = Instant::now();

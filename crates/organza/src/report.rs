@@ -97,9 +97,6 @@ pub struct FrameReport {
     pub analyses: usize,
     /// Halvings in the line search.
     pub halvings: usize,
-    /// Second-order corrections in the line search.
-    #[serde(default)]
-    pub corrections: usize,
     /// Implicit stages solved.
     pub stages: usize,
     /// Implicit stages that stopped before they reached the tolerance.
@@ -147,7 +144,6 @@ impl FrameReport {
             factorisations: solve.factorisations,
             analyses: solve.analyses,
             halvings: solve.halvings,
-            corrections: solve.corrections,
             stages: solve.stages,
             unconverged_stages: solve.unconverged,
             residual_m_per_s: solve.residual,

@@ -223,7 +223,8 @@ impl World {
     /// Builds forces, matrix and names if the mesh has changed.
     fn prepare(&mut self) -> Result<(), PatternError> {
         if self.prepared.is_none() {
-            let system = System::new(&self.cloth, &self.fabrics, &self.environment)?;
+            let h = self.frame_s / f64::from(self.substeps);
+            let system = System::new(&self.cloth, &self.fabrics, &self.environment, h)?;
             self.prepared = Some(Prepared { system, names: by_name(&self.cloth.mesh) });
         }
         Ok(())

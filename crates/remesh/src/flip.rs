@@ -171,7 +171,16 @@ impl Driver<'_> {
         if after < self.settings.aspect_min && after < before {
             return false;
         }
-        !self.flip_folds(h, g) && mesh.can_flip(h).is_ok()
+        !self.flip_folds(h, g) && self.flip_keeps_strain(h, g, quad) && mesh.can_flip(h).is_ok()
+    }
+
+    /// True if the flip puts no strain into the cloth beyond what is allowed.
+    fn flip_keeps_strain(&self, h: HalfEdge, g: HalfEdge, u: &[Material2; 4]) -> bool {
+        let mesh = &self.cloth.mesh;
+        let x = [h, g, h.prev(), g.prev()].map(|e| self.cloth.x[mesh.origin(e).index()]);
+        let pick = |places: [usize; 3]| (places.map(|i| u[i]), places.map(|i| x[i]));
+        let panel = mesh.panels()[h.triangle().index()];
+        self.keeps_strain(panel, [pick([0, 1, 2]), pick([1, 0, 3])], [pick([3, 1, 2]), pick([2, 0, 3])])
     }
 
     /// True if the two new faces would lie across each other in world space.

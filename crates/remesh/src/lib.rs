@@ -70,6 +70,7 @@ mod report;
 mod settings;
 mod split;
 mod star;
+mod strain;
 
 pub use context::SizingContext;
 pub use corners::CornerMetrics;

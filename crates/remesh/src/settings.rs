@@ -19,6 +19,10 @@ pub struct RemeshSettings<'a> {
     pub keep: &'a [u64],
     /// Panels whose triangles are left exactly as they are.
     pub fixed_panels: &'a [u32],
+    /// Least and largest principal stretch that a flip or a collapse may leave, by panel (1): one that
+    /// would strain a triangle further is refused, unless it was so before. Panels beyond the end of
+    /// the slice are not limited.
+    pub stretch_limits: &'a [[f64; 2]],
     /// Metric wanted for the proximity of obstacles, one per triangle (1/m²); handed to the sizing
     /// field.
     pub obstacle: Option<&'a [Metric]>,
@@ -32,6 +36,7 @@ impl Default for RemeshSettings<'_> {
             max_vertices: 200_000,
             keep: &[],
             fixed_panels: &[],
+            stretch_limits: &[],
             obstacle: None,
         }
     }

@@ -241,8 +241,10 @@ impl Driver<'_> {
                 [e, e.next(), e.prev()].map(|h| self.cloth.x[mesh.origin(h).index()]);
             let (old, new) = (area_vector(x_v, x_p, x_q), area_vector(x_kept, x_p, x_q));
             let (dot, squares) = (old.dot(&new), old.norm_squared() * new.norm_squared());
-            dot > 0.0 && dot * dot > SHARPEST_TURN * SHARPEST_TURN * squares
-                || old.norm_squared() == 0.0
+            let is_even = dot > 0.0 && dot * dot > SHARPEST_TURN * SHARPEST_TURN * squares;
+            let panel = mesh.panels()[e.triangle().index()];
+            let (before, after) = (([v, p, q], [x_v, x_p, x_q]), ([kept, p, q], [x_kept, x_p, x_q]));
+            (is_even || old.norm_squared() == 0.0) && self.keeps_strain(panel, [before], [after])
         })
     }
 }

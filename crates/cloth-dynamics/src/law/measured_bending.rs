@@ -70,6 +70,18 @@ impl Law for MeasuredBending {
         a.component_mul(a).dot(&mean)
     }
 
+    fn stress(&self, a: &Vector3<f64>) -> Vector3<f64> {
+        let k = Self::norm(a);
+        let [mean, d, _] = self.mean(k);
+        let stress = a.component_mul(&mean) * 2.0;
+        if k > 1e-12 {
+            let grad_k = a.component_mul(&Vector3::new(1.0, 1.0, 0.5)) / k;
+            stress + grad_k * a.component_mul(a).dot(&d)
+        } else {
+            stress
+        }
+    }
+
     fn response(&self, a: &Vector3<f64>) -> Response {
         let k = Self::norm(a);
         let [mean, d, dd] = self.mean(k);

@@ -93,6 +93,70 @@ impl MeasuredMembrane {
     }
 }
 
+/// What the first derivative of the energy is made of.
+struct FirstOrder {
+    /// Radius of Mohr's circle, and its half difference and shear over the radius.
+    r: f64,
+    rd: f64,
+    rs: f64,
+    /// 2 W and its derivatives.
+    ramp: [f64; 3],
+    blend: Blend,
+    /// Gradients of e = p + r and c = d/r.
+    grad_e: Vector3<f64>,
+    grad_c: Vector3<f64>,
+    s_0: Vector3<f64>,
+    s_12: Vector3<f64>,
+    q_12: f64,
+    /// Q − q₀ and its gradient.
+    excess: f64,
+    grad_excess: Vector3<f64>,
+}
+
+impl FirstOrder {
+    fn stress(&self) -> Vector3<f64> {
+        let [ramp, d_ramp, _] = self.ramp;
+        self.s_0 + self.grad_excess * ramp + self.grad_e * (d_ramp * self.excess)
+    }
+}
+
+impl MeasuredMembrane {
+    /// `None` where nothing but the first row counts.
+    fn first_order(&self, a: &Vector3<f64>) -> Option<FirstOrder> {
+        // Mean strain p, half difference d, shear s; r is the radius of Mohr's circle.
+        let (p, d, s) = (0.5 * (a.x + a.y), 0.5 * (a.x - a.y), 0.5 * a.z);
+        let r = (d * d + s * s + ROUND * ROUND).sqrt();
+        let ramp = Self::ramp(p + r - ROUND);
+        if ramp[0] == 0.0 {
+            return None;
+        }
+        let (rd, rs) = (d / r, s / r);
+        // From (p, d, s) to (a₁₁, a₂₂, 2a₁₂).
+        let gradient =
+            |p: f64, d: f64, s: f64| Vector3::new(0.5 * (p + d), 0.5 * (p - d), 0.5 * s);
+        let grad_c = gradient(0.0, (1.0 - rd * rd) / r, -rd * rs / r);
+        let blend = Self::blend(rd);
+        let s_0 = self.rows[0] * a;
+        let [s_1, s_2] = blend.rows.map(|row| self.rows[row] * a);
+        let s_12 = s_2 - s_1;
+        let q_12 = 0.5 * a.dot(&s_12);
+        Some(FirstOrder {
+            r,
+            rd,
+            rs,
+            ramp,
+            grad_e: gradient(1.0, rd, rs),
+            excess: 0.5 * a.dot(&(s_1 - s_0)) + blend.w * q_12,
+            grad_excess: s_1 + s_12 * blend.w - s_0 + grad_c * (blend.dw * q_12),
+            grad_c,
+            blend,
+            s_0,
+            s_12,
+            q_12,
+        })
+    }
+}
+
 impl Law for MeasuredMembrane {
     fn energy(&self, a: &Vector3<f64>) -> f64 {
         let quadratic = |row: usize| 0.5 * a.dot(&(self.rows[row] * a));
@@ -108,48 +172,40 @@ impl Law for MeasuredMembrane {
         q_0 + ramp * (q_1 + blend.w * (q_2 - q_1) - q_0)
     }
 
-    fn response(&self, a: &Vector3<f64>) -> Response {
-        let s_0 = self.rows[0] * a;
-        let q_0 = 0.5 * a.dot(&s_0);
-        // Mean strain p, half difference d, shear s; r is the radius of Mohr's circle.
-        let (p, d, s) = (0.5 * (a.x + a.y), 0.5 * (a.x - a.y), 0.5 * a.z);
-        let r = (d * d + s * s + ROUND * ROUND).sqrt();
-        let [ramp, d_ramp, dd_ramp] = Self::ramp(p + r - ROUND);
-        if ramp == 0.0 {
-            return Response { energy: q_0, stress: s_0, tangent: self.rows[0] };
+    fn stress(&self, a: &Vector3<f64>) -> Vector3<f64> {
+        match self.first_order(a) {
+            Some(first) => first.stress(),
+            None => self.rows[0] * a,
         }
+    }
 
-        // ∇ and ∇² of e = p + r and c = d/r, first in (p, d, s), then in (a₁₁, a₂₂, 2a₁₂).
-        let (rd, rs) = (d / r, s / r);
-        let to_pds = Matrix3::new(0.5, 0.5, 0.0, 0.5, -0.5, 0.0, 0.0, 0.0, 0.5);
-        let symmetric = |dd: f64, ds: f64, ss: f64| {
-            to_pds.transpose() * Matrix3::new(0.0, 0.0, 0.0, 0.0, dd, ds, 0.0, ds, ss) * to_pds
+    fn response(&self, a: &Vector3<f64>) -> Response {
+        let Some(first) = self.first_order(a) else {
+            let stress = self.rows[0] * a;
+            return Response { energy: 0.5 * a.dot(&stress), stress, tangent: self.rows[0] };
         };
-        let grad_e = to_pds.tr_mul(&Vector3::new(1.0, rd, rs));
-        let grad_c = to_pds.tr_mul(&Vector3::new(0.0, (1.0 - rd * rd) / r, -rd * rs / r));
-        let hess_e = symmetric((1.0 - rd * rd) / r, -rd * rs / r, (1.0 - rs * rs) / r);
-        let hess_c = symmetric(
+        let FirstOrder { r, rd, rs, ramp: [ramp, d_ramp, dd_ramp], .. } = first;
+        let FirstOrder { grad_e, grad_c, grad_excess, excess, q_12, s_12, .. } = first;
+        let hessian = |dd: f64, ds: f64, ss: f64| {
+            Matrix3::new(dd, -dd, ds, -dd, dd, -ds, ds, -ds, ss) * 0.25
+        };
+        let hess_e = hessian((1.0 - rd * rd) / r, -rd * rs / r, (1.0 - rs * rs) / r);
+        let hess_c = hessian(
             -3.0 * rd * (1.0 - rd * rd) / (r * r),
             rs * (3.0 * rd * rd - 1.0) / (r * r),
             rd * (3.0 * rs * rs - 1.0) / (r * r),
         );
 
-        let blend = Self::blend(rd);
-        let [k_1, k_2] = blend.rows.map(|row| self.rows[row]);
-        let (s_1, s_12) = (k_1 * a, (k_2 - k_1) * a);
-        let q_12 = 0.5 * a.dot(&s_12);
-        let excess = 0.5 * a.dot(&s_1) + blend.w * q_12 - q_0;
-        let s_excess = s_1 + s_12 * blend.w - s_0;
+        let blend = &first.blend;
+        let [k_1, k_2] = blend.rows.map(|row| &self.rows[row]);
         let k_excess = k_1 + (k_2 - k_1) * blend.w - self.rows[0];
         let (q_c, q_cc, s_c) = (blend.dw * q_12, blend.ddw * q_12, s_12 * blend.dw);
-
         let outer = |u: &Vector3<f64>, v: &Vector3<f64>| u * v.transpose() + v * u.transpose();
-        let grad_excess = s_excess + grad_c * q_c;
         let hess_excess =
             k_excess + outer(&grad_c, &s_c) + grad_c * grad_c.transpose() * q_cc + hess_c * q_c;
         Response {
-            energy: q_0 + ramp * excess,
-            stress: s_0 + grad_excess * ramp + grad_e * (d_ramp * excess),
+            energy: 0.5 * a.dot(&first.s_0) + ramp * excess,
+            stress: first.stress(),
             tangent: self.rows[0]
                 + hess_excess * ramp
                 + outer(&grad_e, &grad_excess) * d_ramp

@@ -30,6 +30,9 @@ pub trait Law {
     /// Energy per material area (J/m²).
     fn energy(&self, a: &Vector3<f64>) -> f64;
 
+    /// First derivative: the conjugate stress (N/m) or moment (N).
+    fn stress(&self, a: &Vector3<f64>) -> Vector3<f64>;
+
     /// Energy, stress and tangent.
     fn response(&self, a: &Vector3<f64>) -> Response;
 
@@ -63,6 +66,13 @@ macro_rules! dispatch {
                 match self {
                     $kind::Orthotropic(law) => law.energy(a),
                     $kind::Measured(law) => law.energy(a),
+                }
+            }
+            #[inline]
+            fn stress(&self, a: &Vector3<f64>) -> Vector3<f64> {
+                match self {
+                    $kind::Orthotropic(law) => law.stress(a),
+                    $kind::Measured(law) => law.stress(a),
                 }
             }
             #[inline]

@@ -69,6 +69,11 @@ impl Law for Quadratic {
     }
 
     #[inline]
+    fn stress(&self, a: &Vector3<f64>) -> Vector3<f64> {
+        self.c * a
+    }
+
+    #[inline]
     fn response(&self, a: &Vector3<f64>) -> Response {
         let stress = self.c * a;
         Response { energy: 0.5 * a.dot(&stress), stress, tangent: self.c }

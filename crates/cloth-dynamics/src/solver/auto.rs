@@ -120,21 +120,6 @@ impl LinearSolver for Auto {
         }
     }
 
-    fn solve_again(
-        &mut self,
-        matrix: &BlockMatrix,
-        rhs: &[Vector3<f64>],
-        x: &mut [Vector3<f64>],
-    ) -> Result<LinearReport, LinearError> {
-        if self.solves_since_jacobi == 0 {
-            return self.jacobi.solve(matrix, rhs, x);
-        }
-        match self.factor.solve_again(matrix, rhs, x) {
-            Err(LinearError::TooLarge { .. }) => self.jacobi.solve(matrix, rhs, x),
-            result => result,
-        }
-    }
-
     fn reset(&mut self) {
         *self = Self::new(*self.factor.settings());
     }

@@ -66,15 +66,6 @@ impl LinearSolver for BlockJacobiCg {
         }
     }
 
-    fn solve_again(
-        &mut self,
-        matrix: &BlockMatrix,
-        rhs: &[Vector3<f64>],
-        x: &mut [Vector3<f64>],
-    ) -> Result<LinearReport, LinearError> {
-        self.solve(matrix, rhs, x)
-    }
-
     fn reset(&mut self) {}
 }
 

@@ -41,18 +41,6 @@ impl LinearSolver for SparseCholesky {
         }
     }
 
-    fn solve_again(
-        &mut self,
-        matrix: &BlockMatrix,
-        rhs: &[Vector3<f64>],
-        x: &mut [Vector3<f64>],
-    ) -> Result<LinearReport, LinearError> {
-        match check(matrix, rhs, x)? {
-            Some(report) => Ok(report),
-            None => self.kept.solve_again(matrix, rhs, x),
-        }
-    }
-
     fn reset(&mut self) {
         *self = Self::new(*self.kept.settings());
     }
@@ -219,22 +207,6 @@ impl LinearSolver for StaleFactorCg {
             Some(report) => Ok(report),
             None => self.solve_checked(matrix, rhs, x),
         }
-    }
-
-    fn solve_again(
-        &mut self,
-        matrix: &BlockMatrix,
-        rhs: &[Vector3<f64>],
-        x: &mut [Vector3<f64>],
-    ) -> Result<LinearReport, LinearError> {
-        if let Some(report) = check(matrix, rhs, x)? {
-            return Ok(report);
-        }
-        let report = self.kept.solve_again(matrix, rhs, x)?;
-        if report.refactored {
-            self.begin_life(matrix, &report);
-        }
-        Ok(report)
     }
 
     fn reset(&mut self) {

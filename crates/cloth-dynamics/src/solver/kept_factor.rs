@@ -179,22 +179,6 @@ impl KeptFactor {
         })
     }
 
-    /// Solves with the factor of this very matrix, or factors it if there is none.
-    pub(super) fn solve_again(
-        &mut self,
-        matrix: &BlockMatrix,
-        rhs: &[Vector3<f64>],
-        x: &mut [Vector3<f64>],
-    ) -> Result<LinearReport, LinearError> {
-        if self.has_factor(matrix.pattern())
-            && let Some(outcome) = self.solve_stale(matrix, rhs, x, REFINE_DOUBLE)
-            && matches!(outcome.end, End::Converged | End::Rounding)
-        {
-            return Ok(LinearReport::iterative(Method::StaleFactorCg, &outcome));
-        }
-        self.solve_fresh(matrix, rhs, x)
-    }
-
     /// Factors `matrix` and solves: in single precision if it is allowed and good enough, else in
     /// double precision, else with a shift.
     pub(super) fn solve_fresh(

@@ -60,15 +60,6 @@ pub trait LinearSolver: Send {
         x: &mut [Vector3<f64>],
     ) -> Result<LinearReport, LinearError>;
 
-    /// Solves once more with the very matrix of the last successful call: a factor is used again as
-    /// it is, without a test whether that pays.
-    fn solve_again(
-        &mut self,
-        matrix: &BlockMatrix,
-        rhs: &[Vector3<f64>],
-        x: &mut [Vector3<f64>],
-    ) -> Result<LinearReport, LinearError>;
-
     /// Forgets all factors, analyses and history: from here on the solver behaves, bit for bit, like
     /// a new one. Called at checkpoints, so that a resumed run goes on like an uninterrupted one.
     fn reset(&mut self);

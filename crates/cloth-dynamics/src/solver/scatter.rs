@@ -40,18 +40,35 @@ impl<const N: usize> StencilSlots<N> {
 
     /// Looks up the slot of every pair of corners. `None` if the pattern lacks one of them.
     pub fn new(pattern: &BlockPattern, stencils: &[[u32; N]]) -> Option<Self> {
+        Self::look_up(pattern, stencils, |slot| slot)
+    }
+
+    /// Looks up the slots of the pairs that the pattern has. Blocks of the others are passed over by
+    /// [`StencilSlots::scatter`].
+    pub fn within(pattern: &BlockPattern, stencils: &[[u32; N]]) -> Self {
+        Self::look_up(pattern, stencils, |slot| Some(slot.unwrap_or(ABSENT)))
+            .expect("a pair without a slot counts as absent")
+    }
+
+    /// `settle` decides what becomes of a pair that may have no slot.
+    fn look_up(
+        pattern: &BlockPattern,
+        stencils: &[[u32; N]],
+        settle: impl Fn(Option<u32>) -> Option<u32>,
+    ) -> Option<Self> {
         let mut entries = Vec::with_capacity(stencils.len() * Self::PAIRS);
         for corners in stencils {
             for (a, &va) in corners.iter().enumerate() {
                 for (b, &vb) in corners[..=a].iter().enumerate() {
-                    entries.push(if va == ABSENT || vb == ABSENT {
-                        ABSENT
+                    let entry = if va == ABSENT || vb == ABSENT {
+                        Some(ABSENT)
                     } else {
-                        let slot = pattern.slot(va.max(vb) as usize, va.min(vb) as usize)? as u32;
+                        let slot = pattern.slot(va.max(vb) as usize, va.min(vb) as usize);
                         let transposed = if va < vb { TRANSPOSED } else { 0 };
                         let same = if a != b && va == vb { SAME_VERTEX } else { 0 };
-                        slot | transposed | same
-                    });
+                        settle(slot.map(|slot| slot as u32 | transposed | same))
+                    };
+                    entries.push(entry?);
                 }
             }
         }
