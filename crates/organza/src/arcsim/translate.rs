@@ -132,7 +132,7 @@ fn translate(arcsim: ArcsimFile, notes: &mut Notes) -> Option<SceneFile> {
         integrator: extras.integrator.unwrap_or(Integrator::ImplicitEuler),
         newton: extras.newton.unwrap_or(Newton { max_iterations: 4, tolerance: 0.1 }),
         linear_solver: extras.linear_solver.unwrap_or_default(),
-        linear_tolerance: extras.linear_tolerance.unwrap_or(1e-4),
+        linear_tolerance: extras.linear_tolerance.unwrap_or(1e-3),
         cloths: cloths.into_iter().collect::<Option<_>>()?,
         handles,
         camera: extras.camera,
