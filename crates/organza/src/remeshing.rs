@@ -1,17 +1,17 @@
-//! The remeshing policy of a scene: sizing per panel, limits for the whole mesh.
+//! The remeshing policy of a world: a sizing field, and limits for the whole mesh.
 
 use crate::build::Garment;
 use crate::scene::Scene;
 use mesh_core::ClothState;
 use remesh::{
-    CornerMetrics, PerPanel, PhysicalSizing, RemeshError, RemeshReport, RemeshSettings, adapt,
+    CornerMetrics, PerPanel, PhysicalSizing, RemeshError, RemeshReport, RemeshSettings,
+    SizingField, adapt,
 };
 use std::time::Instant;
 
-/// What a scene wants of the remesher.
-#[derive(Clone, Debug)]
+/// What a world wants of the remesher.
 pub struct Remeshing {
-    sizing: PerPanel<PhysicalSizing>,
+    sizing: Box<dyn SizingField>,
     fixed_panels: Vec<u32>,
     aspect_min: f64,
     hysteresis: f64,
@@ -19,25 +19,22 @@ pub struct Remeshing {
 }
 
 impl Remeshing {
-    /// The policy; `None` if every mesh of the scene is fixed.
+    /// The policy of a scene, sized by [`PhysicalSizing`] panel by panel; `None` if every mesh of
+    /// the scene is fixed.
     pub fn new(scene: &Scene, garments: &[Garment]) -> Option<Remeshing> {
-        let mut policy = Remeshing {
-            sizing: PerPanel { fields: Vec::new() },
-            fixed_panels: Vec::new(),
-            aspect_min: 1.0,
-            hysteresis: 0.0,
-            max_vertices: 0,
-        };
+        let mut fields = Vec::new();
+        let (mut fixed_panels, mut max_vertices) = (Vec::new(), 0);
+        let (mut aspect_min, mut hysteresis) = (1.0, 0.0);
         for (cloth, garment) in scene.cloths.iter().zip(garments) {
             let field = match &cloth.remeshing {
                 None => {
-                    policy.fixed_panels.extend(garment.panels.clone());
+                    fixed_panels.extend(garment.panels.clone());
                     PhysicalSizing::default()
                 }
                 Some(wish) => {
-                    policy.aspect_min = policy.aspect_min.min(wish.aspect_min);
-                    policy.hysteresis = policy.hysteresis.max(wish.hysteresis);
-                    policy.max_vertices += wish.max_vertices as usize;
+                    aspect_min = f64::min(aspect_min, wish.aspect_min);
+                    hysteresis = f64::max(hysteresis, wish.hysteresis);
+                    max_vertices += wish.max_vertices as usize;
                     PhysicalSizing {
                         refine_angle: wish.refine_angle.unwrap_or(f64::INFINITY),
                         refine_velocity: wish.refine_velocity.unwrap_or(f64::INFINITY),
@@ -48,9 +45,19 @@ impl Remeshing {
                     }
                 }
             };
-            policy.sizing.fields.extend(garment.panels.clone().map(|_| field));
+            fields.extend(garment.panels.clone().map(|_| field));
         }
+        let sizing = Box::new(PerPanel { fields });
+        let policy = Remeshing { sizing, fixed_panels, aspect_min, hysteresis, max_vertices };
         scene.cloths.iter().any(|c| c.remeshing.is_some()).then_some(policy)
+    }
+
+    /// The same policy with another sizing field, made from the one it had.
+    pub fn sized_by<S: SizingField + 'static>(
+        self,
+        field: impl FnOnce(Box<dyn SizingField>) -> S,
+    ) -> Remeshing {
+        Remeshing { sizing: Box::new(field(self.sizing)), ..self }
     }
 
     /// Remeshes; returns what was done and the seconds spent on sizing and on edits.
@@ -71,7 +78,7 @@ impl Remeshing {
             obstacle: None,
         };
         let clock = Instant::now();
-        let mut metrics = CornerMetrics::evaluate(cloth, &self.sizing, &settings)?;
+        let mut metrics = CornerMetrics::evaluate(cloth, &*self.sizing, &settings)?;
         let sizing = clock.elapsed().as_secs_f64();
         let report = adapt(cloth, &mut metrics, &settings)?;
         Ok((report, [sizing, clock.elapsed().as_secs_f64() - sizing]))

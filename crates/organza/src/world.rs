@@ -12,6 +12,7 @@ use cloth_dynamics::{
     System, TimeIntegrator, Wind,
 };
 use mesh_core::{ClothState, World3};
+use remesh::SizingField;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -47,6 +48,11 @@ pub enum StepError {
         source: remesh::RemeshError,
     },
 }
+
+/// No cloth of the scene is remeshed, so a sizing field would never be asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no cloth of the scene has `remeshing`, so there is nothing to size")]
+pub struct NothingRemeshed;
 
 /// A running scene. Optional parts that the scene does not need are absent.
 pub struct World {
@@ -135,6 +141,24 @@ impl World {
         };
         world.prepare().map_err(|e| BuildError::TooLarge(e.to_string()))?;
         Ok(world)
+    }
+
+    /// Puts a sizing field of your own in the place of the one in use, which `field` is given to
+    /// build upon or to drop. A world starts with the `PhysicalSizing` of every cloth's `remeshing`.
+    ///
+    /// The field is asked about all cloths; [`World::garments`] tells whose panels are whose. Those
+    /// without `remeshing` stay as they are, and limits of the scene that are not the field's hold on:
+    /// aspect, hysteresis, number of vertices.
+    ///
+    /// # Errors
+    /// If the scene remeshes nothing; the world is then as before.
+    pub fn set_sizing<S: SizingField + 'static>(
+        &mut self,
+        field: impl FnOnce(Box<dyn SizingField>) -> S,
+    ) -> Result<(), NothingRemeshed> {
+        let old = self.remeshing.take().ok_or(NothingRemeshed)?;
+        self.remeshing = Some(old.sized_by(field));
+        Ok(())
     }
 
     /// Simulated time of the last finished frame (s).
