@@ -1,7 +1,7 @@
 //! From a scene's data to meshes, fabrics and handles.
 
 use crate::handles::Handles;
-use crate::scene::format::{Diagonal as SceneDiagonal, Skirt};
+use crate::scene::format::{Diagonal as SceneDiagonal, Skirt, Tunic};
 use crate::scene::{self, Loaded, MeshSource};
 use cloth_dynamics::law::{
     Bending, MeasuredBending, MeasuredMembrane, Membrane, NotPositive, Quadratic,
@@ -160,11 +160,31 @@ fn piece(cloth: &scene::Cloth, loaded: &Loaded) -> Result<Piece, BuildError> {
             let [around, along] = tube.segments.map(|n| n as usize);
             generated(generate::tube(tube.radius_m, tube.length_m, around, along))
         }
-        MeshSource::Skirt(skirt) => generated(generate::skirt(&tailored(skirt))),
+        MeshSource::Skirt(skirt) => generated(generate::skirt(&skirt_of(skirt))),
+        MeshSource::Tunic(tunic) => generated(generate::tunic(&tunic_of(tunic))),
+        MeshSource::Poncho(poncho) => generated(generate::poncho(
+            poncho.width_m,
+            poncho.length_m,
+            poncho.neck_width_m,
+            poncho.cell_m,
+        )),
     }
 }
 
-fn tailored(skirt: &Skirt) -> generate::Skirt {
+fn tunic_of(tunic: &Tunic) -> generate::Tunic {
+    generate::Tunic {
+        width: tunic.width_m,
+        hem_width: tunic.hem_width_m.unwrap_or(tunic.width_m),
+        length: tunic.length_m,
+        armhole: tunic.armhole_m,
+        neck_width: tunic.neck_width_m,
+        neck_depth: tunic.neck_depth_m,
+        sleeve: tunic.sleeve_m,
+        cell: tunic.cell_m,
+    }
+}
+
+fn skirt_of(skirt: &Skirt) -> generate::Skirt {
     generate::Skirt {
         panels: skirt.panels as usize,
         waist_radius: skirt.waist_m / std::f64::consts::TAU,

@@ -2,7 +2,7 @@
 
 use super::format::{
     BendingModel, Camera, Damping, Disc, Grid, Integrator, LinearSolver, Multipliers, Newton,
-    Recording, Remeshing, Select, Skirt, Spin, Tube, Wind,
+    Poncho, Recording, Remeshing, Select, Skirt, Spin, Tube, Tunic, Wind,
 };
 use super::motion::{Motion, Transform};
 use crate::fabric::Fabric;
@@ -107,6 +107,10 @@ pub enum MeshSource {
     Tube(Tube),
     /// A skirt.
     Skirt(Skirt),
+    /// A tunic.
+    Tunic(Tunic),
+    /// A poncho.
+    Poncho(Poncho),
 }
 
 /// Holds or moves vertices of a cloth.
