@@ -7,7 +7,7 @@ use cloth_dynamics::law::{
     Bending, MeasuredBending, MeasuredMembrane, Membrane, NotPositive, Quadratic,
 };
 use cloth_dynamics::{BendingModel, Damping, Fabric, StrainLimits};
-use mesh_core::generate::{self, Diagonal, GenerateError, Sheet};
+use mesh_core::generate::{self, Border, Diagonal, GenerateError, Sheet};
 use mesh_core::obj::{self, ObjError};
 use mesh_core::{ClothState, Material2, Mesh, MeshError, VertexId, World3};
 
@@ -84,10 +84,13 @@ pub struct Built {
 }
 
 /// A cloth before it joins the others.
-struct Piece {
-    mesh: Mesh,
-    positions: Vec<World3>,
-    vertex_of_file: Option<Vec<Option<VertexId>>>,
+pub(crate) struct Piece {
+    pub(crate) mesh: Mesh,
+    pub(crate) positions: Vec<World3>,
+    /// The vertex that each of a file became.
+    pub(crate) vertex_of_file: Option<Vec<Option<VertexId>>>,
+    /// What a generator calls the parts of the boundary; empty for files.
+    pub(crate) borders: Vec<Border>,
 }
 
 /// Builds meshes, fabrics and handles of a scene.
@@ -111,7 +114,7 @@ pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
         let first_vertex = joined.positions.len() as u32;
         for (number, handle) in scene.handles.iter().enumerate().filter(|(_, h)| h.cloth == index) {
             handles
-                .add(number, handle, &piece.mesh, piece.vertex_of_file.as_deref(), first_vertex)
+                .add(number, handle, &piece, first_vertex)
                 .map_err(|message| BuildError::Handle { handle: number, message })?;
         }
         joined.add(cloth, &piece, first);
@@ -126,7 +129,9 @@ pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
 
 fn piece(cloth: &scene::Cloth, loaded: &Loaded) -> Result<Piece, BuildError> {
     let generated = |sheet: Result<Sheet, GenerateError>| match sheet {
-        Ok(Sheet { mesh, positions, .. }) => Ok(Piece { mesh, positions, vertex_of_file: None }),
+        Ok(Sheet { mesh, positions, borders }) => {
+            Ok(Piece { mesh, positions, vertex_of_file: None, borders })
+        }
         Err(source) => Err(BuildError::Generate { cloth: cloth.name.clone(), source }),
     };
     match &cloth.mesh {
@@ -146,6 +151,7 @@ fn piece(cloth: &scene::Cloth, loaded: &Loaded) -> Result<Piece, BuildError> {
                 mesh: cloth.mesh,
                 positions: cloth.positions,
                 vertex_of_file: Some(cloth.vertex_of_file),
+                borders: Vec::new(),
             })
         }
         MeshSource::Grid(grid) => {
