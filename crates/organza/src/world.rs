@@ -1,5 +1,8 @@
 //! The world: state and policies of a running scene, and the step.
 
+#[cfg(test)]
+mod tests;
+
 use crate::build::{BuildError, Built, Garment, build};
 use crate::handles::{Handles, by_name};
 use crate::remeshing::Remeshing;
@@ -16,7 +19,7 @@ use remesh::SizingField;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Why a frame could not be finished. The world is as it was after the last good step.
+/// Why a frame could not be finished. The world is as it was after the last finished frame.
 #[derive(Debug, thiserror::Error)]
 pub enum StepError {
     /// A step failed at every length that was tried.
@@ -169,8 +172,18 @@ impl World {
     /// Makes the next frame: all its steps, then one remeshing.
     ///
     /// # Errors
-    /// See [`StepError`]; the frame is then not counted.
+    /// See [`StepError`]. A frame is a transaction: the world is then as a checkpoint of the last
+    /// finished frame would restore it, and another try makes the whole frame.
     pub fn advance(&mut self) -> Result<FrameReport, StepError> {
+        // Nothing that can fail changes the mesh.
+        let start = (self.cloth.x.clone(), self.cloth.v.clone(), self.handles.clone());
+        self.make_frame().inspect_err(|_| {
+            (self.cloth.x, self.cloth.v, self.handles) = start;
+            self.forget();
+        })
+    }
+
+    fn make_frame(&mut self) -> Result<FrameReport, StepError> {
         let frame = self.frame + 1;
         let (mut solve, mut seconds, mut retries) = (SolveReport::default(), Seconds::default(), 0);
         let clock = Instant::now();
