@@ -1,15 +1,17 @@
 //! From a scene's data to meshes, fabrics and handles.
 
+mod fabric;
+mod piece;
+
+pub(crate) use piece::Piece;
+
 use crate::handles::Handles;
-use crate::scene::format::{Diagonal as SceneDiagonal, Skirt, Tunic};
-use crate::scene::{self, Loaded, MeshSource};
-use cloth_dynamics::law::{
-    Bending, MeasuredBending, MeasuredMembrane, Membrane, NotPositive, Quadratic,
-};
-use cloth_dynamics::{BendingModel, Damping, Fabric, StrainLimits};
-use mesh_core::generate::{self, Border, Diagonal, GenerateError, Sheet};
-use mesh_core::obj::{self, ObjError};
-use mesh_core::{ClothState, Material2, Mesh, MeshError, VertexId, World3};
+use crate::scene::{self, Loaded};
+use cloth_dynamics::Fabric;
+use cloth_dynamics::law::NotPositive;
+use mesh_core::generate::GenerateError;
+use mesh_core::obj::ObjError;
+use mesh_core::{ClothState, Material2, Mesh, MeshError, World3};
 
 /// Why a scene that reads well cannot be built.
 #[derive(Debug, thiserror::Error)]
@@ -45,6 +47,14 @@ pub enum BuildError {
         cloth: String,
         /// What is wrong.
         source: NotPositive,
+    },
+    /// A fabric of its own is given to a panel that the cloth does not have.
+    #[error("cloth `{cloth}`: {message}")]
+    Panel {
+        /// Name of the cloth.
+        cloth: String,
+        /// What is wrong.
+        message: String,
     },
     /// A handle holds nothing or names what does not exist.
     #[error("handles[{handle}]: {message}")]
@@ -83,16 +93,6 @@ pub struct Built {
     pub warnings: Vec<String>,
 }
 
-/// A cloth before it joins the others.
-pub(crate) struct Piece {
-    pub(crate) mesh: Mesh,
-    pub(crate) positions: Vec<World3>,
-    /// The vertex that each of a file became.
-    pub(crate) vertex_of_file: Option<Vec<Option<VertexId>>>,
-    /// What a generator calls the parts of the boundary; empty for files.
-    pub(crate) borders: Vec<Border>,
-}
-
 /// Builds meshes, fabrics and handles of a scene.
 ///
 /// # Errors
@@ -103,14 +103,10 @@ pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
     let (mut fabrics, mut garments, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
     let mut handles = Handles::default();
     for (index, cloth) in scene.cloths.iter().enumerate() {
-        let piece = piece(cloth, loaded)?;
-        let fabric = fabric(cloth, &mut warnings)?;
-        let n_panels = piece.mesh.panels().iter().max().map_or(1, |&p| p + 1);
+        let piece = piece::piece(cloth, loaded)?;
         let first = fabrics.len() as u32;
-        for _ in 0..n_panels {
-            fabrics.push(fabric.clone());
-        }
-        garments.push(Garment { name: cloth.name.clone(), panels: first..first + n_panels });
+        fabrics.extend(fabrics_of_panels(cloth, &piece, &mut warnings)?);
+        garments.push(Garment { name: cloth.name.clone(), panels: first..fabrics.len() as u32 });
         let first_vertex = joined.positions.len() as u32;
         for (number, handle) in scene.handles.iter().enumerate().filter(|(_, h)| h.cloth == index) {
             handles
@@ -127,125 +123,21 @@ pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
     Ok(Built { cloth, fabrics, garments, handles, warnings })
 }
 
-fn piece(cloth: &scene::Cloth, loaded: &Loaded) -> Result<Piece, BuildError> {
-    let generated = |sheet: Result<Sheet, GenerateError>| match sheet {
-        Ok(Sheet { mesh, positions, borders }) => {
-            Ok(Piece { mesh, positions, vertex_of_file: None, borders })
-        }
-        Err(source) => Err(BuildError::Generate { cloth: cloth.name.clone(), source }),
-    };
-    match &cloth.mesh {
-        MeshSource::Obj { obj: file, material_obj } => {
-            let read = |file: &String| {
-                let bytes = loaded.source(file).unwrap_or_default();
-                obj::read(bytes).map_err(|source| BuildError::Obj { file: file.clone(), source })
-            };
-            let world = read(file)?;
-            let material = material_obj.as_ref().map(read).transpose()?;
-            let cloth = match &material {
-                Some(material) => world.to_mesh_with(material),
-                None => world.to_mesh(),
-            };
-            let cloth = cloth.map_err(|source| BuildError::Obj { file: file.clone(), source })?;
-            Ok(Piece {
-                mesh: cloth.mesh,
-                positions: cloth.positions,
-                vertex_of_file: Some(cloth.vertex_of_file),
-                borders: Vec::new(),
-            })
-        }
-        MeshSource::Grid(grid) => {
-            let diagonal = match grid.diagonal {
-                SceneDiagonal::Alternating => Diagonal::Alternating,
-                SceneDiagonal::One => Diagonal::One,
-            };
-            generated(generate::grid(grid.size_m, grid.cells.map(|n| n as usize), diagonal))
-        }
-        MeshSource::Disc(disc) => generated(generate::disc(disc.radius_m, disc.rings as usize)),
-        MeshSource::Tube(tube) => {
-            let [around, along] = tube.segments.map(|n| n as usize);
-            generated(generate::tube(tube.radius_m, tube.length_m, around, along))
-        }
-        MeshSource::Skirt(skirt) => generated(generate::skirt(&skirt_of(skirt))),
-        MeshSource::Tunic(tunic) => generated(generate::tunic(&tunic_of(tunic))),
-        MeshSource::Poncho(poncho) => generated(generate::poncho(
-            poncho.width_m,
-            poncho.length_m,
-            poncho.neck_width_m,
-            poncho.cell_m,
-        )),
+/// The fabric of every panel of a cloth.
+fn fabrics_of_panels(
+    cloth: &scene::Cloth,
+    piece: &Piece,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Fabric>, BuildError> {
+    let common = fabric::fabric(cloth, &cloth.fabric, warnings)?;
+    let mut fabrics = vec![common; piece.panels.len()];
+    for (name, material) in &cloth.panel_fabrics {
+        let panel = piece.panel(name);
+        let panel =
+            panel.map_err(|message| BuildError::Panel { cloth: cloth.name.clone(), message })?;
+        fabrics[panel as usize] = fabric::fabric(cloth, material, warnings)?;
     }
-}
-
-fn tunic_of(tunic: &Tunic) -> generate::Tunic {
-    generate::Tunic {
-        width: tunic.width_m,
-        hem_width: tunic.hem_width_m.unwrap_or(tunic.width_m),
-        length: tunic.length_m,
-        armhole: tunic.armhole_m,
-        neck_width: tunic.neck_width_m,
-        neck_depth: tunic.neck_depth_m,
-        sleeve: tunic.sleeve_m,
-        cell: tunic.cell_m,
-    }
-}
-
-fn skirt_of(skirt: &Skirt) -> generate::Skirt {
-    generate::Skirt {
-        panels: skirt.panels as usize,
-        waist_radius: skirt.waist_m / std::f64::consts::TAU,
-        hem_radius: skirt.hem_m / std::f64::consts::TAU,
-        length: skirt.length_m,
-        around: skirt.cells[0] as usize,
-        along: skirt.cells[1] as usize,
-    }
-}
-
-fn fabric(cloth: &scene::Cloth, warnings: &mut Vec<String>) -> Result<Fabric, BuildError> {
-    let scale = &cloth.multipliers;
-    let bad = |source| BuildError::Fabric { cloth: cloth.name.clone(), source };
-    let (density, membrane, bending) = match &cloth.fabric {
-        crate::fabric::Fabric::Orthotropic(fabric) => {
-            let c = fabric.stretching_n_per_m;
-            let k = scale.stretching;
-            let membrane =
-                Quadratic::orthotropic(c.warp * k, c.coupling * k, c.weft * k, c.shear * k)
-                    .map_err(bad)?;
-            let b = fabric.bending_n_m;
-            let [warp, bias, weft] = [b.warp, b.bias, b.weft].map(|b| b * scale.bending);
-            let bending = if warp.max(bias).max(weft) > 0.0 {
-                Some(Bending::Orthotropic(Quadratic::plate(warp, bias, weft).map_err(bad)?))
-            } else {
-                None
-            };
-            (fabric.density_kg_per_m2, Membrane::Orthotropic(membrane), bending)
-        }
-        crate::fabric::Fabric::Measured(fabric) => {
-            let membrane = MeasuredMembrane::new(&fabric.stretching, scale.stretching);
-            if membrane.repaired_rows() > 0 {
-                warnings.push(format!(
-                    "cloth `{}`: {} of 6 measured rows of stretching are not positive \
-                     semi-definite and are projected",
-                    cloth.name,
-                    membrane.repaired_rows()
-                ));
-            }
-            // A file's constants are those of the discrete hinge, whose rigidity is a quarter.
-            let bending = MeasuredBending::new(&fabric.bending, 0.25 * scale.bending);
-            (fabric.density, Membrane::Measured(membrane), Some(Bending::Measured(bending)))
-        }
-    };
-    Ok(Fabric {
-        density: density * scale.density,
-        membrane,
-        bending,
-        bending_model: match cloth.bending {
-            crate::scene::format::BendingModel::Patch => BendingModel::ShapeOperator,
-            crate::scene::format::BendingModel::Hinge => BendingModel::Hinge,
-        },
-        strain_limits: cloth.strain_limits.map(|[min, max]| StrainLimits { min, max }),
-        damping: Damping { mass: cloth.damping.mass_per_s, stiffness: cloth.damping.stiffness_s },
-    })
+    Ok(fabrics)
 }
 
 /// The common mesh while it is put together.

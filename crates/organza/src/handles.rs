@@ -69,7 +69,7 @@ impl Handles {
             extent: match handle.select {
                 Select::Vertices(_) | Select::Corners(_) => Extent::Points,
                 Select::Sides(_) | Select::Borders(_) | Select::Boundary => Extent::Border,
-                Select::Box(_) | Select::All => Extent::Area,
+                Select::Panels(_) | Select::Box(_) | Select::All => Extent::Area,
             },
             motion: handle.motion.clone(),
             start: handle.start_s,

@@ -30,6 +30,7 @@ pub(super) fn select(select: &Select, piece: &Piece) -> Result<Vec<VertexId>, St
         }
         Select::Sides(sides) => collect(sides, |&side| side_of(piece, side)),
         Select::Borders(names) => collect(names, |name| border(piece, name)),
+        Select::Panels(names) => collect(names, |name| panel(piece, name)),
         Select::Box(area) => Ok(Pattern::of(mesh).inside(area.min.into(), area.max.into())),
         Select::Boundary => Ok(mesh.vertices().filter(|&v| mesh.is_boundary_vertex(v)).collect()),
         Select::All => Ok(mesh.vertices().collect()),
@@ -42,6 +43,14 @@ fn collect<T>(
     one: impl Fn(&T) -> Result<Vec<VertexId>, String>,
 ) -> Result<Vec<VertexId>, String> {
     Ok(names.iter().map(one).collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+/// All vertices of a panel, its outline included.
+fn panel(piece: &Piece, name: &str) -> Result<Vec<VertexId>, String> {
+    let panel = piece.panel(name)?;
+    let triangles = piece.mesh.triangles().iter().zip(piece.mesh.panels());
+    let inside = triangles.filter(|&(_, &p)| p == panel);
+    Ok(inside.flat_map(|(t, _)| t.map(VertexId)).collect())
 }
 
 /// A border of a generated mesh.

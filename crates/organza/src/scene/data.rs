@@ -72,6 +72,8 @@ pub struct Cloth {
     pub transform: Transform,
     /// What the cloth is made of.
     pub fabric: Fabric,
+    /// What single panels are made of instead, by name.
+    pub panel_fabrics: Vec<(String, Fabric)>,
     /// Multipliers of the fabric, `thicken` included.
     pub multipliers: Multipliers,
     /// Smallest and largest principal stretch, min < 1 < max (1).

@@ -88,6 +88,10 @@ pub enum Select {
     /// sleeves `left-cuff`, `right-cuff`, without them `left-armhole`, `right-armhole` (right is x > 0
     /// before the transform); a poncho `neck`, `outline`.
     Borders(Vec<String>),
+    /// All vertices of panels, outlines included. The panels of a mesh file are its groups (`g`) and
+    /// objects (`o`) by name; those of a tunic `front`, `back`, `right-sleeve`, `left-sleeve`; of a
+    /// poncho `front`, `back`; of other meshes `0`, `1` and so on.
+    Panels(Vec<String>),
     /// All vertices inside a rectangle of the pattern, its border included.
     Box(PatternBox),
     /// All vertices on the border of the cloth.
