@@ -6,7 +6,7 @@ mod piece;
 pub(crate) use piece::Piece;
 
 use crate::handles::Handles;
-use crate::scene::{self, Loaded};
+use crate::scene::{self, Loaded, limits};
 use cloth_dynamics::Fabric;
 use cloth_dynamics::law::NotPositive;
 use mesh_core::generate::GenerateError;
@@ -101,13 +101,19 @@ pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
     let scene = &loaded.scene;
     let mut joined = Joined::default();
     let (mut fabrics, mut garments, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
-    let mut handles = Handles::default();
+    let (mut handles, mut first_vertices) = (Handles::default(), Vec::new());
     for (index, cloth) in scene.cloths.iter().enumerate() {
         let piece = piece::piece(cloth, loaded)?;
         let first = fabrics.len() as u32;
         fabrics.extend(fabrics_of_panels(cloth, &piece, &mut warnings)?);
         garments.push(Garment { name: cloth.name.clone(), panels: first..fabrics.len() as u32 });
+        let n_triangles = joined.triangles.len() + piece.mesh.n_triangles();
+        if n_triangles > limits::MAX_SCENE_TRIANGLES {
+            let limit = limits::MAX_SCENE_TRIANGLES;
+            return Err(BuildError::TooLarge(format!("more than {limit} triangles in all cloths")));
+        }
         let first_vertex = joined.positions.len() as u32;
+        first_vertices.push(first_vertex as usize);
         for (number, handle) in scene.handles.iter().enumerate().filter(|(_, h)| h.cloth == index) {
             handles
                 .add(number, handle, &piece, first_vertex)
@@ -115,12 +121,31 @@ pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
         }
         joined.add(cloth, &piece, first);
     }
-    let error = |source| BuildError::Mesh { cloth: garments[0].name.clone(), source };
     let Joined { triangles, material, panels, positions, velocities } = joined;
+    let panel_of = panels.clone();
+    let error = |source| {
+        // What was good by itself can still fail where it is put: say which cloth it was.
+        let cloth = match &source {
+            MeshError::MaterialArea { triangle, .. } => {
+                cloth_of_panel(&garments, panel_of[*triangle])
+            }
+            MeshError::Density { panel, .. } => cloth_of_panel(&garments, *panel as u32),
+            MeshError::NotFinite { what, index } if what.ends_with("of vertex") => {
+                first_vertices.partition_point(|first| first <= index) - 1
+            }
+            _ => 0,
+        };
+        BuildError::Mesh { cloth: garments[cloth].name.clone(), source }
+    };
     let mesh = Mesh::new(positions.len(), triangles, material, panels).map_err(error)?;
     let density = fabrics.iter().map(|f| f.density).collect();
     let cloth = ClothState::new(mesh, positions, velocities, density).map_err(error)?;
     Ok(Built { cloth, fabrics, garments, handles, warnings })
+}
+
+/// The cloth that a panel belongs to.
+fn cloth_of_panel(garments: &[Garment], panel: u32) -> usize {
+    garments.partition_point(|garment| garment.panels.end <= panel)
 }
 
 /// The fabric of every panel of a cloth.

@@ -2,7 +2,7 @@
 
 use crate::build::Garment;
 use crate::scene::Scene;
-use mesh_core::ClothState;
+use mesh_core::{ClothState, Mesh};
 use remesh::{
     CornerMetrics, PerPanel, PhysicalSizing, RemeshError, RemeshReport, RemeshSettings,
     SizingField, adapt,
@@ -21,7 +21,7 @@ pub struct Remeshing {
 impl Remeshing {
     /// The policy of a scene, sized by [`PhysicalSizing`] panel by panel; `None` if every mesh of
     /// the scene is fixed.
-    pub fn new(scene: &Scene, garments: &[Garment]) -> Option<Remeshing> {
+    pub fn new(scene: &Scene, garments: &[Garment], mesh: &Mesh) -> Option<Remeshing> {
         let mut fields = Vec::new();
         let (mut fixed_panels, mut max_vertices) = (Vec::new(), 0);
         let (mut aspect_min, mut hysteresis) = (1.0, 0.0);
@@ -47,6 +47,8 @@ impl Remeshing {
             };
             fields.extend(garment.panels.clone().map(|_| field));
         }
+        // The limit is one for the whole mesh, of which fixed cloths have their part already.
+        max_vertices += n_vertices_of(mesh, &fixed_panels);
         let sizing = Box::new(PerPanel { fields });
         let policy = Remeshing { sizing, fixed_panels, aspect_min, hysteresis, max_vertices };
         scene.cloths.iter().any(|c| c.remeshing.is_some()).then_some(policy)
@@ -82,5 +84,36 @@ impl Remeshing {
         let sizing = clock.elapsed().as_secs_f64();
         let report = adapt(cloth, &mut metrics, &settings)?;
         Ok((report, [sizing, clock.elapsed().as_secs_f64() - sizing]))
+    }
+}
+
+/// Number of vertices on some panels, given in rising order.
+fn n_vertices_of(mesh: &Mesh, panels: &[u32]) -> usize {
+    let mut on = vec![false; mesh.n_vertices()];
+    for (t, panel) in mesh.triangles().iter().zip(mesh.panels()) {
+        if panels.binary_search(panel).is_ok() {
+            t.iter().for_each(|&v| on[v as usize] = true);
+        }
+    }
+    on.into_iter().filter(|&on| on).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::{LoadOptions, from_sources, parse};
+    use crate::world::World;
+
+    /// A sheet of 4 vertices that wants many more, beside a fixed one of 121.
+    #[test]
+    fn fixed_cloths_do_not_use_up_the_limit_of_others() {
+        let text = "{frames: 1, substeps: 1, gravity: [0, 0, 0], cloths: [
+            {fabric: 'denim', mesh: {grid: {size_m: [1, 1], cells: [10, 10]}}},
+            {fabric: 'denim', mesh: {grid: {size_m: [1, 1], cells: [1, 1]}},
+             remeshing: {size_m: {min: 0.01, max: 0.02}, max_vertices: 50}}]}";
+        let loaded = parse(text, "s", &LoadOptions::default(), &from_sources(&[])).unwrap();
+        let mut world = World::new(&loaded).unwrap();
+        let report = world.advance().unwrap();
+        assert_eq!(report.vertices, 121 + 50);
+        assert!(report.remesh.unwrap().limit_reached);
     }
 }

@@ -125,9 +125,9 @@ impl World {
         });
         let mut world = World {
             frame: 0,
+            remeshing: Remeshing::new(scene, &garments, &cloth.mesh),
             cloth,
             handles,
-            remeshing: Remeshing::new(scene, &garments),
             garments,
             warnings,
             fabrics: Arc::new(fabrics),

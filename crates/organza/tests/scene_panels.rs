@@ -105,3 +105,19 @@ fn check_weighs_panels_by_their_own_fabric() {
     assert!(out.contains("3.0000 m², 0.7500 kg"), "{out}");
     assert!(out.contains("panels of other fabrics: middle"), "{out}");
 }
+
+/// A pattern that is good by itself and vanishes once it is scaled.
+#[test]
+fn the_cloth_that_does_not_fit_is_named() {
+    let text = "{frames: 1, cloths: [
+        {fabric: 'denim', mesh: {grid: {size_m: [1, 1], cells: [1, 1]}}},
+        {fabric: 'denim', name: 'speck', mesh: {obj: 'speck.obj'}, transform: {scale: 1e-6}}]}";
+    let speck = "v 0 0 0\nv 1e-158 0 0\nv 0 1e-158 0\nf 1 2 3\n";
+    let files = [Source { name: "speck.obj".into(), bytes: speck.into() }];
+    let options = LoadOptions::default();
+    let loaded = scene::parse(text, "s.json5", &options, &scene::from_sources(&files)).unwrap();
+    let error = World::new(&loaded).unwrap_err();
+    assert!(error.to_string().starts_with("cloth `speck`: triangle 2 has area"), "{error}");
+    let placed = organza::record::place(&loaded, &error).to_string();
+    assert!(placed.starts_with("s.json5:3:") && placed.contains("cloths[1].mesh: "), "{placed}");
+}
