@@ -87,6 +87,11 @@ impl ChunkHeader {
     /// Bytes that hold any header of a chunk we can read.
     pub(crate) const ENOUGH: usize = 64;
 
+    /// Bytes of the chunk with this header; absurd ones are as many as can be.
+    pub(crate) fn chunk_bytes(&self) -> u64 {
+        self.length.saturating_add(self.compressed_size)
+    }
+
     /// `bytes` are the first of the chunk, [`Self::ENOUGH`] unless it is shorter.
     pub(crate) fn parse(bytes: &[u8]) -> Option<Self> {
         let mut cursor = Cursor(bytes);

@@ -199,7 +199,7 @@ impl<'a, R: Read + Seek> Walk<'a, R> {
         let n = record.size.min(ChunkHeader::ENOUGH as u64);
         let bytes = self.source.bytes_at(record.content(), n)?;
         match ChunkHeader::parse(&bytes) {
-            Some(header) if header.length + header.compressed_size <= record.size => {
+            Some(header) if header.chunk_bytes() <= record.size => {
                 let data = record.content() + header.length;
                 let chunk = Chunk { offset: record.offset, data, header, topics: None };
                 self.unsettled = Some(Unsettled { chunk, indexed: Vec::new(), unknown: false });

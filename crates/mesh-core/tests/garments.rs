@@ -71,7 +71,7 @@ fn two_squares() {
     let mut sheets = squares();
     lay_out(&mut sheets, 0.5);
     let sewn = sew(&sheets, &[seam(chain(0, &[1, 3]), chain(1, &[0, 2]))]).unwrap();
-    let Sheet { mesh, positions } = &sewn.sheet;
+    let Sheet { mesh, positions, .. } = &sewn.sheet;
     mesh.validate().unwrap();
     assert_eq!((mesh.n_vertices(), mesh.euler_characteristic()), (6, 1));
     assert_eq!((n_seams(mesh), mesh.panels()), (1, &[0, 0, 1, 1][..]));
@@ -140,7 +140,7 @@ fn two_sides(rings: usize) -> [Sheet; 2] {
     let panels = vec![0; triangles.len()];
     let n = disc.mesh.n_vertices();
     let mesh = Mesh::new(n, triangles, material.collect(), panels).unwrap();
-    let back = Sheet { mesh, positions: disc.positions.clone() };
+    let back = Sheet { mesh, positions: disc.positions.clone(), borders: Vec::new() };
     [disc, back]
 }
 
@@ -273,7 +273,7 @@ fn parts_of_a_tunic() {
         cell: 0.05,
     };
     let sheet = tunic(&shape).unwrap();
-    let Sheet { mesh, positions } = &sheet;
+    let Sheet { mesh, positions, .. } = &sheet;
     assert_eq!(loop_lengths(mesh), [8, 8, 12, 28], "cuffs, neck, hem");
     // Shoulders, sides, armholes, underarms.
     assert_eq!(n_seams(mesh), 2 * 4 + 2 * 10 + 2 * 8 + 2 * 5);

@@ -53,6 +53,20 @@ fn groups_share_vertices_and_keep_the_numbering() {
 }
 
 #[test]
+fn groups_and_objects_are_panels() {
+    let text =
+        "v -1 0 0\ng gone\nf 1 2 3\no Back side \ng front # main\nf 1 3 4\ng gone\nf 5 1 4\n";
+    let file = square(text).unwrap();
+    assert_eq!(file.groups, ["gone", "front"]);
+    assert_eq!([0, 1, 2].map(|t| file.group(t)), [0, 1, 0]);
+    assert_eq!(file.to_mesh().unwrap().mesh.panels(), [0, 1, 0]);
+    let file = square("f 1 2 3\no Back\t side \nf 1 3 4\n").unwrap();
+    assert_eq!(file.groups, ["default", "Back side"]);
+    let file = square("g\nf 1 2 3 4\n").unwrap();
+    assert_eq!((&*file.groups, file.group(1)), (&[String::new()][..], 0));
+}
+
+#[test]
 fn relative_and_later_indices() {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\nf 2 4 3\nv 1 1 0\n";
     assert_eq!(read(text).unwrap().triangles, [[0, 1, 2], [1, 3, 2]]);

@@ -1,15 +1,17 @@
 //! From a scene's data to meshes, fabrics and handles.
 
+mod fabric;
+mod piece;
+
+pub(crate) use piece::Piece;
+
 use crate::handles::Handles;
-use crate::scene::format::{Diagonal as SceneDiagonal, Skirt};
-use crate::scene::{self, Loaded, MeshSource};
-use cloth_dynamics::law::{
-    Bending, MeasuredBending, MeasuredMembrane, Membrane, NotPositive, Quadratic,
-};
-use cloth_dynamics::{BendingModel, Damping, Fabric, StrainLimits};
-use mesh_core::generate::{self, Diagonal, GenerateError, Sheet};
-use mesh_core::obj::{self, ObjError};
-use mesh_core::{ClothState, Material2, Mesh, MeshError, VertexId, World3};
+use crate::scene::{self, Loaded, limits};
+use cloth_dynamics::Fabric;
+use cloth_dynamics::law::NotPositive;
+use mesh_core::generate::GenerateError;
+use mesh_core::obj::ObjError;
+use mesh_core::{ClothState, Material2, Mesh, MeshError, World3};
 
 /// Why a scene that reads well cannot be built.
 #[derive(Debug, thiserror::Error)]
@@ -45,6 +47,14 @@ pub enum BuildError {
         cloth: String,
         /// What is wrong.
         source: NotPositive,
+    },
+    /// A fabric of its own is given to a panel that the cloth does not have.
+    #[error("cloth `{cloth}`: {message}")]
+    Panel {
+        /// Name of the cloth.
+        cloth: String,
+        /// What is wrong.
+        message: String,
     },
     /// A handle holds nothing or names what does not exist.
     #[error("handles[{handle}]: {message}")]
@@ -83,13 +93,6 @@ pub struct Built {
     pub warnings: Vec<String>,
 }
 
-/// A cloth before it joins the others.
-struct Piece {
-    mesh: Mesh,
-    positions: Vec<World3>,
-    vertex_of_file: Option<Vec<Option<VertexId>>>,
-}
-
 /// Builds meshes, fabrics and handles of a scene.
 ///
 /// # Errors
@@ -98,128 +101,68 @@ pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
     let scene = &loaded.scene;
     let mut joined = Joined::default();
     let (mut fabrics, mut garments, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
-    let mut handles = Handles::default();
+    let (mut handles, mut first_vertices) = (Handles::default(), Vec::new());
     for (index, cloth) in scene.cloths.iter().enumerate() {
-        let piece = piece(cloth, loaded)?;
-        let fabric = fabric(cloth, &mut warnings)?;
-        let n_panels = piece.mesh.panels().iter().max().map_or(1, |&p| p + 1);
+        let piece = piece::piece(cloth, loaded)?;
         let first = fabrics.len() as u32;
-        for _ in 0..n_panels {
-            fabrics.push(fabric.clone());
+        fabrics.extend(fabrics_of_panels(cloth, &piece, &mut warnings)?);
+        garments.push(Garment { name: cloth.name.clone(), panels: first..fabrics.len() as u32 });
+        let n_triangles = joined.triangles.len() + piece.mesh.n_triangles();
+        if n_triangles > limits::MAX_SCENE_TRIANGLES {
+            let limit = limits::MAX_SCENE_TRIANGLES;
+            return Err(BuildError::TooLarge(format!("more than {limit} triangles in all cloths")));
         }
-        garments.push(Garment { name: cloth.name.clone(), panels: first..first + n_panels });
         let first_vertex = joined.positions.len() as u32;
+        first_vertices.push(first_vertex as usize);
         for (number, handle) in scene.handles.iter().enumerate().filter(|(_, h)| h.cloth == index) {
             handles
-                .add(number, handle, &piece.mesh, piece.vertex_of_file.as_deref(), first_vertex)
+                .add(number, handle, &piece, first_vertex)
                 .map_err(|message| BuildError::Handle { handle: number, message })?;
         }
         joined.add(cloth, &piece, first);
     }
-    let error = |source| BuildError::Mesh { cloth: garments[0].name.clone(), source };
     let Joined { triangles, material, panels, positions, velocities } = joined;
+    let panel_of = panels.clone();
+    let error = |source| {
+        // What was good by itself can still fail where it is put: say which cloth it was.
+        let cloth = match &source {
+            MeshError::MaterialArea { triangle, .. } => {
+                cloth_of_panel(&garments, panel_of[*triangle])
+            }
+            MeshError::Density { panel, .. } => cloth_of_panel(&garments, *panel as u32),
+            MeshError::NotFinite { what, index } if what.ends_with("of vertex") => {
+                first_vertices.partition_point(|first| first <= index) - 1
+            }
+            _ => 0,
+        };
+        BuildError::Mesh { cloth: garments[cloth].name.clone(), source }
+    };
     let mesh = Mesh::new(positions.len(), triangles, material, panels).map_err(error)?;
     let density = fabrics.iter().map(|f| f.density).collect();
     let cloth = ClothState::new(mesh, positions, velocities, density).map_err(error)?;
     Ok(Built { cloth, fabrics, garments, handles, warnings })
 }
 
-fn piece(cloth: &scene::Cloth, loaded: &Loaded) -> Result<Piece, BuildError> {
-    let generated = |sheet: Result<Sheet, GenerateError>| match sheet {
-        Ok(Sheet { mesh, positions, .. }) => Ok(Piece { mesh, positions, vertex_of_file: None }),
-        Err(source) => Err(BuildError::Generate { cloth: cloth.name.clone(), source }),
-    };
-    match &cloth.mesh {
-        MeshSource::Obj { obj: file, material_obj } => {
-            let read = |file: &String| {
-                let bytes = loaded.source(file).unwrap_or_default();
-                obj::read(bytes).map_err(|source| BuildError::Obj { file: file.clone(), source })
-            };
-            let world = read(file)?;
-            let material = material_obj.as_ref().map(read).transpose()?;
-            let cloth = match &material {
-                Some(material) => world.to_mesh_with(material),
-                None => world.to_mesh(),
-            };
-            let cloth = cloth.map_err(|source| BuildError::Obj { file: file.clone(), source })?;
-            Ok(Piece {
-                mesh: cloth.mesh,
-                positions: cloth.positions,
-                vertex_of_file: Some(cloth.vertex_of_file),
-            })
-        }
-        MeshSource::Grid(grid) => {
-            let diagonal = match grid.diagonal {
-                SceneDiagonal::Alternating => Diagonal::Alternating,
-                SceneDiagonal::One => Diagonal::One,
-            };
-            generated(generate::grid(grid.size_m, grid.cells.map(|n| n as usize), diagonal))
-        }
-        MeshSource::Disc(disc) => generated(generate::disc(disc.radius_m, disc.rings as usize)),
-        MeshSource::Tube(tube) => {
-            let [around, along] = tube.segments.map(|n| n as usize);
-            generated(generate::tube(tube.radius_m, tube.length_m, around, along))
-        }
-        MeshSource::Skirt(skirt) => generated(generate::skirt(&tailored(skirt))),
-    }
+/// The cloth that a panel belongs to.
+fn cloth_of_panel(garments: &[Garment], panel: u32) -> usize {
+    garments.partition_point(|garment| garment.panels.end <= panel)
 }
 
-fn tailored(skirt: &Skirt) -> generate::Skirt {
-    generate::Skirt {
-        panels: skirt.panels as usize,
-        waist_radius: skirt.waist_m / std::f64::consts::TAU,
-        hem_radius: skirt.hem_m / std::f64::consts::TAU,
-        length: skirt.length_m,
-        around: skirt.cells[0] as usize,
-        along: skirt.cells[1] as usize,
+/// The fabric of every panel of a cloth.
+fn fabrics_of_panels(
+    cloth: &scene::Cloth,
+    piece: &Piece,
+    warnings: &mut Vec<String>,
+) -> Result<Vec<Fabric>, BuildError> {
+    let common = fabric::fabric(cloth, &cloth.fabric, warnings)?;
+    let mut fabrics = vec![common; piece.panels.len()];
+    for (name, material) in &cloth.panel_fabrics {
+        let panel = piece.panel(name);
+        let panel =
+            panel.map_err(|message| BuildError::Panel { cloth: cloth.name.clone(), message })?;
+        fabrics[panel as usize] = fabric::fabric(cloth, material, warnings)?;
     }
-}
-
-fn fabric(cloth: &scene::Cloth, warnings: &mut Vec<String>) -> Result<Fabric, BuildError> {
-    let scale = &cloth.multipliers;
-    let bad = |source| BuildError::Fabric { cloth: cloth.name.clone(), source };
-    let (density, membrane, bending) = match &cloth.fabric {
-        crate::fabric::Fabric::Orthotropic(fabric) => {
-            let c = fabric.stretching_n_per_m;
-            let k = scale.stretching;
-            let membrane =
-                Quadratic::orthotropic(c.warp * k, c.coupling * k, c.weft * k, c.shear * k)
-                    .map_err(bad)?;
-            let b = fabric.bending_n_m;
-            let [warp, bias, weft] = [b.warp, b.bias, b.weft].map(|b| b * scale.bending);
-            let bending = if warp.max(bias).max(weft) > 0.0 {
-                Some(Bending::Orthotropic(Quadratic::plate(warp, bias, weft).map_err(bad)?))
-            } else {
-                None
-            };
-            (fabric.density_kg_per_m2, Membrane::Orthotropic(membrane), bending)
-        }
-        crate::fabric::Fabric::Measured(fabric) => {
-            let membrane = MeasuredMembrane::new(&fabric.stretching, scale.stretching);
-            if membrane.repaired_rows() > 0 {
-                warnings.push(format!(
-                    "cloth `{}`: {} of 6 measured rows of stretching are not positive \
-                     semi-definite and are projected",
-                    cloth.name,
-                    membrane.repaired_rows()
-                ));
-            }
-            // A file's constants are those of the discrete hinge, whose rigidity is a quarter.
-            let bending = MeasuredBending::new(&fabric.bending, 0.25 * scale.bending);
-            (fabric.density, Membrane::Measured(membrane), Some(Bending::Measured(bending)))
-        }
-    };
-    Ok(Fabric {
-        density: density * scale.density,
-        membrane,
-        bending,
-        bending_model: match cloth.bending {
-            crate::scene::format::BendingModel::Patch => BendingModel::ShapeOperator,
-            crate::scene::format::BendingModel::Hinge => BendingModel::Hinge,
-        },
-        strain_limits: cloth.strain_limits.map(|[min, max]| StrainLimits { min, max }),
-        damping: Damping { mass: cloth.damping.mass_per_s, stiffness: cloth.damping.stiffness_s },
-    })
+    Ok(fabrics)
 }
 
 /// The common mesh while it is put together.

@@ -73,22 +73,28 @@ pub fn restore(world: &mut World, checkpoint: &Checkpoint) -> Result<(), Restore
         Some(Column::U64(values)) => Ok(values.as_slice()),
         _ => Err(bad(column)),
     };
-    let vectors = |values: &[f64]| -> Vec<World3> {
-        values.chunks_exact(3).map(World3::from_column_slice).collect()
+    let vectors = |name: &str, column| -> Result<Vec<World3>, RestoreError> {
+        let (vectors, rest) = f64s(name, column)?.as_chunks::<3>();
+        let whole = rest.is_empty().then(|| vectors.iter().copied().map(World3::from).collect());
+        whole.ok_or_else(|| bad(column))
     };
 
-    let triangles = u32s("triangles", "triangles")?;
-    let triangles: Vec<[u32; 3]> = triangles.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect();
-    let material = f64s("material", "material")?;
-    let material: Vec<[Material2; 3]> = material
-        .chunks_exact(6)
-        .map(|c| [0, 2, 4].map(|k| Material2::new(c[k], c[k + 1])))
-        .collect();
-    let (x, v) = (vectors(f64s("x", "x")?), vectors(f64s("v", "v")?));
+    let (triangles, rest) = u32s("triangles", "triangles")?.as_chunks::<3>();
+    if !rest.is_empty() {
+        return Err(bad("triangles"));
+    }
+    let (material, rest) = f64s("material", "material")?.as_chunks::<6>();
+    if !rest.is_empty() {
+        return Err(bad("material"));
+    }
+    let corners = |c: &[f64; 6]| [0, 2, 4].map(|k| Material2::new(c[k], c[k + 1]));
+    let material: Vec<[Material2; 3]> = material.iter().map(corners).collect();
+    let (x, v) = (vectors("x", "x")?, vectors("v", "v")?);
     let &[next_uid] = u64s("next_uid", "next_uid")? else { return Err(bad("next_uid")) };
     let mesh_error = |source| RestoreError::Mesh { frame, source };
-    let mesh = Mesh::new(x.len(), triangles, material, u32s("panels", "panels")?.to_vec())
-        .and_then(|m| m.with_uids(u64s("uids", "uids").unwrap_or_default().to_vec(), next_uid))
+    let (panels, uids) = (u32s("panels", "panels")?.to_vec(), u64s("uids", "uids")?.to_vec());
+    let mesh = Mesh::new(x.len(), triangles.to_vec(), material, panels)
+        .and_then(|mesh| mesh.with_uids(uids, next_uid))
         .map_err(mesh_error)?;
     let density = world.cloth.densities().to_vec();
     let cloth = ClothState::new(mesh, x, v, density).map_err(mesh_error)?;
@@ -96,9 +102,13 @@ pub fn restore(world: &mut World, checkpoint: &Checkpoint) -> Result<(), Restore
     let mut handles = world.handles.clone();
     for (k, handle) in handles.list_mut().iter_mut().enumerate() {
         let names = u64s(&format!("handle {k} uids"), "handle uids")?;
-        let homes = vectors(f64s(&format!("handle {k} homes"), "handle homes")?);
+        let homes = vectors(&format!("handle {k} homes"), "handle homes")?;
         if names.len() != homes.len() {
             return Err(bad("handle homes"));
+        }
+        // They are searched, and no vertex is held twice.
+        if !names.is_sorted_by(|a, b| a < b) {
+            return Err(bad("handle uids"));
         }
         let place = |x: World3| (!x.x.is_nan()).then_some(x);
         handle.held = names.iter().copied().zip(homes.into_iter().map(place)).collect();
@@ -108,4 +118,57 @@ pub fn restore(world: &mut World, checkpoint: &Checkpoint) -> Result<(), Restore
     world.frame = frame;
     world.forget();
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{LoadOptions, from_sources, parse};
+
+    fn world() -> World {
+        let text = "{frames: 2, cloths: [{fabric: 'denim', mesh: {grid: {size_m: [1, 1], cells: [1, 1]}}}],
+            handles: [{select: {sides: ['upper']}}]}";
+        World::new(&parse(text, "s", &LoadOptions::default(), &from_sources(&[])).unwrap()).unwrap()
+    }
+
+    /// Nothing is cut to fit and nothing is put right: what does not fit is named.
+    #[test]
+    fn what_does_not_fit_is_refused_and_changes_nothing() {
+        let mut world = world();
+        world.advance().unwrap();
+        let good = save(&mut world);
+        restore(&mut world, &good).unwrap();
+        let before = (world.frame, world.cloth.clone(), world.handles.clone());
+        let columns: Vec<String> = good.columns.iter().map(|(name, _)| name.clone()).collect();
+        for name in &columns {
+            let text: fn(&mut Column) = |c| *c = Column::Text("none".into());
+            let longer: fn(&mut Column) = |c| match c {
+                Column::F64(values) => values.push(0.5),
+                Column::U32(values) => values.push(0),
+                Column::U64(values) => values.push(u64::MAX),
+                Column::Text(_) => {}
+            };
+            let shorter: fn(&mut Column) = |c| match c {
+                Column::F64(values) => drop(values.pop()),
+                Column::U32(values) => drop(values.pop()),
+                Column::U64(values) => drop(values.pop()),
+                Column::Text(_) => {}
+            };
+            for change in [text, longer, shorter] {
+                let mut bad = good.clone();
+                bad.columns.iter_mut().filter(|(n, _)| n == name).for_each(|(_, c)| change(c));
+                let error = restore(&mut world, &bad).unwrap_err().to_string();
+                assert!(error.starts_with("the checkpoint of frame 1"), "{name}: {error}");
+                assert_eq!((world.frame, &world.cloth, &world.handles), (1, &before.1, &before.2));
+            }
+            let mut without = good.clone();
+            without.columns.retain(|(n, _)| n != name);
+            let error = restore(&mut world, &without).unwrap_err().to_string();
+            assert!(error.contains("no usable column"), "{name}: {error}");
+        }
+        let mut unsorted = good.clone();
+        let names = unsorted.columns.iter_mut().find(|(n, _)| n == "handle 0 uids").unwrap();
+        names.1 = Column::U64(vec![3, 2]);
+        assert!(restore(&mut world, &unsorted).is_err());
+    }
 }

@@ -1,10 +1,13 @@
 //! What holds vertices: pins, clamps and keyframed handles, in step with a changing mesh.
 
+mod select;
+
+use crate::build::Piece;
 use crate::scene;
-use crate::scene::format::{Corner, Select, Side};
+use crate::scene::format::Select;
 use crate::scene::motion::Motion;
 use cloth_dynamics::Constraints;
-use mesh_core::{ClothState, Edit, Material2, Mesh, VertexId, World3};
+use mesh_core::{ClothState, Edit, Mesh, World3};
 use nalgebra::Point3;
 
 /// One handle on the running mesh.
@@ -47,15 +50,14 @@ impl Handles {
     ///
     /// # Errors
     /// If it selects a vertex that does not exist, or nothing at all.
-    pub fn add(
+    pub(crate) fn add(
         &mut self,
         number: usize,
         handle: &scene::Handle,
-        mesh: &Mesh,
-        vertex_of_file: Option<&[Option<VertexId>]>,
+        piece: &Piece,
         first_vertex: u32,
     ) -> Result<(), String> {
-        let mut chosen = select(&handle.select, mesh, vertex_of_file)?;
+        let mut chosen = select::select(&handle.select, piece)?;
         chosen.sort_unstable();
         chosen.dedup();
         if chosen.is_empty() {
@@ -66,8 +68,8 @@ impl Handles {
             held: chosen.iter().map(|v| (u64::from(v.0 + first_vertex), None)).collect(),
             extent: match handle.select {
                 Select::Vertices(_) | Select::Corners(_) => Extent::Points,
-                Select::Sides(_) | Select::Boundary => Extent::Border,
-                Select::Box(_) | Select::All => Extent::Area,
+                Select::Sides(_) | Select::Borders(_) | Select::Boundary => Extent::Border,
+                Select::Panels(_) | Select::Box(_) | Select::All => Extent::Area,
             },
             motion: handle.motion.clone(),
             start: handle.start_s,
@@ -167,67 +169,4 @@ pub fn by_name(mesh: &Mesh) -> Vec<(u64, u32)> {
 
 fn lookup(names: &[(u64, u32)], uid: u64) -> Option<u32> {
     names.binary_search_by_key(&uid, |&(u, _)| u).ok().map(|k| names[k].1)
-}
-
-fn select(
-    select: &Select,
-    mesh: &Mesh,
-    vertex_of_file: Option<&[Option<VertexId>]>,
-) -> Result<Vec<VertexId>, String> {
-    let points = material_points(mesh);
-    let low = points.iter().fold(Material2::repeat(f64::INFINITY), |a, (_, u)| a.inf(u));
-    let high = points.iter().fold(Material2::repeat(f64::NEG_INFINITY), |a, (_, u)| a.sup(u));
-    let slack = 1e-9 * (high - low).norm();
-    let inside = |min: Material2, max: Material2| {
-        let keep = |(_, u): &&(VertexId, Material2)| {
-            u.x >= min.x - slack
-                && u.y >= min.y - slack
-                && u.x <= max.x + slack
-                && u.y <= max.y + slack
-        };
-        points.iter().filter(keep).map(|&(v, _)| v).collect::<Vec<_>>()
-    };
-    match select {
-        Select::Vertices(numbers) => {
-            let n = vertex_of_file.map_or(mesh.n_vertices(), <[_]>::len);
-            let one = |&k: &u32| match vertex_of_file {
-                Some(map) => map.get(k as usize).copied().flatten(),
-                None => ((k as usize) < n).then_some(VertexId(k)),
-            };
-            let missing = |k: &u32| format!("there is no vertex {k} in a cloth of {n} vertices");
-            numbers.iter().map(|k| one(k).ok_or_else(|| missing(k))).collect()
-        }
-        Select::Corners(corners) => Ok(corners
-            .iter()
-            .filter_map(|corner| {
-                let at = match corner {
-                    Corner::LowerLeft => low,
-                    Corner::LowerRight => Material2::new(high.x, low.y),
-                    Corner::UpperRight => high,
-                    Corner::UpperLeft => Material2::new(low.x, high.y),
-                };
-                let distance = |u: &Material2| (u - at).norm_squared();
-                points.iter().min_by(|a, b| distance(&a.1).total_cmp(&distance(&b.1)))
-            })
-            .map(|&(v, _)| v)
-            .collect()),
-        Select::Sides(sides) => Ok(sides
-            .iter()
-            .flat_map(|side| match side {
-                Side::Left => inside(low, Material2::new(low.x, high.y)),
-                Side::Right => inside(Material2::new(high.x, low.y), high),
-                Side::Lower => inside(low, Material2::new(high.x, low.y)),
-                Side::Upper => inside(Material2::new(low.x, high.y), high),
-            })
-            .collect()),
-        Select::Box(area) => Ok(inside(area.min.into(), area.max.into())),
-        Select::Boundary => Ok(mesh.vertices().filter(|&v| mesh.is_boundary_vertex(v)).collect()),
-        Select::All => Ok(mesh.vertices().collect()),
-    }
-}
-
-/// Every vertex with each of its material coordinates.
-fn material_points(mesh: &Mesh) -> Vec<(VertexId, Material2)> {
-    let corners = mesh.triangles().iter().zip(mesh.material());
-    corners.flat_map(|(t, u)| [0, 1, 2].map(|k| (VertexId(t[k]), u[k]))).collect()
 }

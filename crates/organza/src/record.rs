@@ -32,7 +32,7 @@ pub use camera::camera;
 pub use error::{RunError, place};
 pub use garments::{PALETTE, garments};
 pub use range::{FrameRange, RangeError};
-pub use resume::{Resumed, resume};
+pub use resume::{Resumed, resume, resume_with};
 pub use settings::Settings;
 pub(crate) use settings::up;
 
@@ -40,6 +40,7 @@ use std::path::{Path, PathBuf};
 
 use io_mcap::{Camera, Frame, Garment, Header, Overwrite, Recorder, RecordingFile};
 
+use crate::build::BuildError;
 use crate::checkpoint;
 use crate::report::FrameReport;
 use crate::scene::{LoadOptions, Loaded};
@@ -85,11 +86,43 @@ impl Run {
         path: &Path,
         options: &RunOptions,
     ) -> Result<Run, RunError> {
+        Self::start_settled(
+            loaded,
+            Settings::new(loaded, load, options)?,
+            path,
+            options,
+            World::new,
+        )
+    }
+
+    /// As [`Run::start`], of a world that `build` makes: one with a sizing field of its own, say, see
+    /// [`World::set_sizing`]. What `build` does is not in the recording, so only
+    /// [`resume_with`] the same `build` continues it.
+    ///
+    /// # Errors
+    /// As for [`Run::start`].
+    pub fn start_with(
+        loaded: &Loaded,
+        load: &LoadOptions,
+        path: &Path,
+        options: &RunOptions,
+        build: impl FnOnce(&Loaded) -> Result<World, BuildError>,
+    ) -> Result<Run, RunError> {
+        let settings = Settings { own_world: true, ..Settings::new(loaded, load, options)? };
+        Self::start_settled(loaded, settings, path, options, build)
+    }
+
+    fn start_settled(
+        loaded: &Loaded,
+        settings: Settings,
+        path: &Path,
+        options: &RunOptions,
+        build: impl FnOnce(&Loaded) -> Result<World, BuildError>,
+    ) -> Result<Run, RunError> {
         let overwrite = if options.overwrite { Overwrite::Yes } else { Overwrite::No };
-        let settings = Settings::new(loaded, load, options)?;
         let header = settings.header(loaded);
         let existed = path.symlink_metadata().is_ok();
-        let world = World::new(loaded).map_err(|error| place(loaded, &error))?;
+        let world = build(loaded).map_err(|error| place(loaded, &error))?;
         Self::begin(loaded, world, header, &settings, path, overwrite).inspect_err(|_| {
             // What a failed first write leaves is no recording. A file that was there before is
             // not ours to remove.

@@ -1,5 +1,8 @@
 //! The world: state and policies of a running scene, and the step.
 
+#[cfg(test)]
+mod tests;
+
 use crate::build::{BuildError, Built, Garment, build};
 use crate::handles::{Handles, by_name};
 use crate::remeshing::Remeshing;
@@ -12,10 +15,11 @@ use cloth_dynamics::{
     System, TimeIntegrator, Wind,
 };
 use mesh_core::{ClothState, World3};
+use remesh::SizingField;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Why a frame could not be finished. The world is as it was after the last good step.
+/// Why a frame could not be finished. The world is as it was after the last finished frame.
 #[derive(Debug, thiserror::Error)]
 pub enum StepError {
     /// A step failed at every length that was tried.
@@ -47,6 +51,11 @@ pub enum StepError {
         source: remesh::RemeshError,
     },
 }
+
+/// No cloth of the scene is remeshed, so a sizing field would never be asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no cloth of the scene has `remeshing`, so there is nothing to size")]
+pub struct NothingRemeshed;
 
 /// A running scene. Optional parts that the scene does not need are absent.
 pub struct World {
@@ -116,9 +125,9 @@ impl World {
         });
         let mut world = World {
             frame: 0,
+            remeshing: Remeshing::new(scene, &garments, &cloth.mesh),
             cloth,
             handles,
-            remeshing: Remeshing::new(scene, &garments),
             garments,
             warnings,
             fabrics: Arc::new(fabrics),
@@ -137,6 +146,24 @@ impl World {
         Ok(world)
     }
 
+    /// Puts a sizing field of your own in the place of the one in use, which `field` is given to
+    /// build upon or to drop. A world starts with the `PhysicalSizing` of every cloth's `remeshing`.
+    ///
+    /// The field is asked about all cloths; [`World::garments`] tells whose panels are whose. Those
+    /// without `remeshing` stay as they are, and limits of the scene that are not the field's hold on:
+    /// aspect, hysteresis, number of vertices.
+    ///
+    /// # Errors
+    /// If the scene remeshes nothing; the world is then as before.
+    pub fn set_sizing<S: SizingField + 'static>(
+        &mut self,
+        field: impl FnOnce(Box<dyn SizingField>) -> S,
+    ) -> Result<(), NothingRemeshed> {
+        let old = self.remeshing.take().ok_or(NothingRemeshed)?;
+        self.remeshing = Some(old.sized_by(field));
+        Ok(())
+    }
+
     /// Simulated time of the last finished frame (s).
     pub fn time(&self) -> f64 {
         self.frame as f64 * self.frame_s
@@ -145,8 +172,18 @@ impl World {
     /// Makes the next frame: all its steps, then one remeshing.
     ///
     /// # Errors
-    /// See [`StepError`]; the frame is then not counted.
+    /// See [`StepError`]. A frame is a transaction: the world is then as a checkpoint of the last
+    /// finished frame would restore it, and another try makes the whole frame.
     pub fn advance(&mut self) -> Result<FrameReport, StepError> {
+        // Nothing that can fail changes the mesh.
+        let start = (self.cloth.x.clone(), self.cloth.v.clone(), self.handles.clone());
+        self.make_frame().inspect_err(|_| {
+            (self.cloth.x, self.cloth.v, self.handles) = start;
+            self.forget();
+        })
+    }
+
+    fn make_frame(&mut self) -> Result<FrameReport, StepError> {
         let frame = self.frame + 1;
         let (mut solve, mut seconds, mut retries) = (SolveReport::default(), Seconds::default(), 0);
         let clock = Instant::now();

@@ -99,6 +99,13 @@ fn scenes() {
             &["cloths[0].mesh.grid.cells: "],
         ),
         (
+            "fine-tunic",
+            with(
+                "mesh: {tunic: {width_m: 0.6, length_m: 0.8, armhole_m: 0.2, neck_width_m: 0.3, cell_m: 1e-5}}, fabric: 'denim'",
+            ),
+            &["cloths[0].mesh: ", "triangles are too many"],
+        ),
+        (
             "far-away",
             with(&format!("{grid} fabric: 'denim', transform: {{translate: [1e9, 0, 0]}}")),
             &["transform.translate"],

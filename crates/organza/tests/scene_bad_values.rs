@@ -69,7 +69,7 @@ fn gravity_wind_camera() {
 
 #[test]
 fn meshes() {
-    let none = "must have exactly one of obj, grid, disc, tube, skirt; has";
+    let none = "must have exactly one of obj, grid, disc, tube, skirt, tunic, poncho; has";
     whole_cloth_complains(
         "mesh: {}, fabric: 'swim'",
         &[&format!("s.json5:2:8: cloths[0].mesh: {none} 0")],
@@ -120,6 +120,38 @@ fn meshes() {
             "s.json5:2:51: cloths[0].mesh.skirt.length_m: 1e-9 m is below the limit of 1e-6 m",
             "s.json5:2:51: cloths[0].mesh.skirt.length_m: 0.000000001 m is too short for hem 7 m and waist \
              0.7 m: their radii differ by 1.0026761414789407 m",
+        ],
+    );
+    whole_cloth_complains(
+        "mesh: {tunic: {width_m: 0.6, length_m: 0.8, armhole_m: 0.9, neck_width_m: 0.7,\n \
+         neck_depth_m: [0.5, -1], sleeve_m: 0, cell_m: 1e-9}}, fabric: 'swim'",
+        &[
+            "s.json5:2:57: cloths[0].mesh.tunic.armhole_m: 0.9 m is not below the length of the \
+             garment, 0.8 m",
+            "s.json5:2:76: cloths[0].mesh.tunic.neck_width_m: 0.7 m is not below the width of the \
+             garment, 0.6 m",
+            "s.json5:3:17: cloths[0].mesh.tunic.neck_depth_m[0]: must lie between 0 and half of the \
+             length, got 0.5",
+            "s.json5:3:22: cloths[0].mesh.tunic.neck_depth_m[1]: must lie between 0 and half of the \
+             length, got -1",
+            "s.json5:3:37: cloths[0].mesh.tunic.sleeve_m: must be positive and finite, got 0",
+            "s.json5:3:48: cloths[0].mesh.tunic.cell_m: 1e-9 m is below the limit of 1e-6 m",
+        ],
+    );
+    whole_cloth_complains(
+        "mesh: {tunic: {width_m: 0.6, hem_width: 0.7}}, fabric: 'swim'",
+        &[
+            "s.json5:2:16: cloths[0].mesh.tunic: key `length_m` is missing",
+            "s.json5:2:31: cloths[0].mesh.tunic.hem_width: unknown key `hem_width`, did you mean \
+             `hem_width_m`?",
+        ],
+    );
+    whole_cloth_complains(
+        "mesh: {poncho: {width_m: 1, length_m: -1, neck_width_m: 1, cell_m: 0.1}}, fabric: 'swim'",
+        &[
+            "s.json5:2:40: cloths[0].mesh.poncho.length_m: must be positive and finite, got -1",
+            "s.json5:2:58: cloths[0].mesh.poncho.neck_width_m: 1 m is not below the width of the \
+             garment, 1 m",
         ],
     );
     whole_cloth_complains(

@@ -209,6 +209,18 @@ fn attached_sources_replace_the_disk() {
     assert_eq!(again.sources, first.sources);
 }
 
+/// Names of files are relative to the scene, that of the scene is not.
+#[test]
+fn a_file_may_be_called_as_the_scene_is() {
+    let text = "{frames: 1, cloths: [{mesh: {obj: 'flag'}, fabric: 'swim'}]}";
+    let mesh =
+        Source { name: "flag".into(), bytes: b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".into() };
+    let options = LoadOptions::default();
+    let loaded = parse(text, "flag", &options, &from_sources(std::slice::from_ref(&mesh))).unwrap();
+    assert_eq!(loaded.source("flag"), Some(&*mesh.bytes));
+    organza::world::World::new(&loaded).unwrap();
+}
+
 #[test]
 fn later_stages_can_point_into_the_file() {
     let text = "{frames: 1,\n cloths: [{mesh: {obj: 'a.obj'}, fabric: 'swim'}]}";

@@ -1,15 +1,16 @@
 //! A round sheet in the plane z = 0.
 
 use super::limits::{check_count, check_size, check_triangles};
-use super::{GenerateError, Sheet};
+use super::{Border, GenerateError, Sheet};
 use crate::geometry::Material2;
+use crate::ids::VertexId;
 use crate::mesh::Mesh;
 use std::f64::consts::TAU;
 
 /// A disc of `radius` (m) around the origin: a centre vertex and `rings` rings with 6 k vertices in
 /// ring k, so that all edges have about the length `radius / rings`. Material and world coordinates
 /// agree. Vertex 0 is the centre; ring k begins on the x axis with the index `1 + 3 k (k - 1)`. The
-/// outline is a regular polygon of `6 rings` corners on the circle.
+/// outline is a regular polygon of `6 rings` corners on the circle: the border `rim`.
 ///
 /// # Errors
 /// If the radius is not positive, finite and within the limits, or if there are no rings or too
@@ -47,5 +48,7 @@ pub fn disc(radius: f64, rings: usize) -> Result<Sheet, GenerateError> {
     let material = triangles.iter().map(|t| t.map(|v| points[v as usize])).collect();
     let panels = vec![0; triangles.len()];
     let positions = points.iter().map(|u| u.push(0.0)).collect();
-    Ok(Sheet { mesh: Mesh::new(points.len(), triangles, material, panels)?, positions })
+    let rim = points.len() - 6 * rings..points.len();
+    let borders = vec![Border { name: "rim", vertices: rim.map(|v| VertexId(v as u32)).collect() }];
+    Ok(Sheet { mesh: Mesh::new(points.len(), triangles, material, panels)?, positions, borders })
 }

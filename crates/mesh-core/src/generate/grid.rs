@@ -6,7 +6,8 @@ use super::{Diagonal, GenerateError, Sheet};
 use crate::geometry::Material2;
 
 /// A sheet of `size` (m) with `cells` cells; the first corner lies at the origin, material and world
-/// coordinates agree. Vertex (i, j) has the index `j (cells[0] + 1) + i`.
+/// coordinates agree. Vertex (i, j) has the index `j (cells[0] + 1) + i`. Borders: `left`, `right`,
+/// `lower`, `upper`.
 ///
 /// # Errors
 /// If a size is not positive, finite and within the limits, or if there are no cells or too many.

@@ -1,7 +1,7 @@
 //! Lattices of cells, each cut into two triangles: the pattern behind grids, tubes and panels.
 
 use super::limits::{check_count, check_triangles};
-use super::{GenerateError, Sheet};
+use super::{Border, GenerateError, Sheet};
 use crate::geometry::{Material2, World3};
 use crate::ids::VertexId;
 use crate::mesh::Mesh;
@@ -35,6 +35,29 @@ impl Lattice {
         VertexId((j * (self.cells[0] + 1) + i) as u32)
     }
 
+    /// The vertices of a row line.
+    pub(super) fn row(&self, j: usize) -> impl Iterator<Item = VertexId> + use<> {
+        let lattice = *self;
+        (0..=self.cells[0]).map(move |i| lattice.vertex(i, j))
+    }
+
+    /// The vertices of a column line.
+    pub(super) fn column(&self, i: usize) -> impl Iterator<Item = VertexId> + use<> {
+        let lattice = *self;
+        (0..=self.cells[1]).map(move |j| lattice.vertex(i, j))
+    }
+
+    /// The sides by name.
+    fn borders(&self) -> Vec<Border> {
+        let [nx, ny] = self.cells;
+        vec![
+            Border { name: "left", vertices: self.column(0).collect() },
+            Border { name: "right", vertices: self.column(nx).collect() },
+            Border { name: "lower", vertices: self.row(0).collect() },
+            Border { name: "upper", vertices: self.row(ny).collect() },
+        ]
+    }
+
     /// The sheet with the given material and world coordinates (m) at every vertex (i, j).
     pub(super) fn sheet(
         &self,
@@ -61,6 +84,7 @@ impl Lattice {
             .map(|(i, j)| world(i, j))
             .collect();
         let panels = vec![0; triangles.len()];
-        Ok(Sheet { mesh: Mesh::new((nx + 1) * (ny + 1), triangles, corners, panels)?, positions })
+        let mesh = Mesh::new((nx + 1) * (ny + 1), triangles, corners, panels)?;
+        Ok(Sheet { mesh, positions, borders: self.borders() })
     }
 }

@@ -29,6 +29,7 @@ pub use tube::tube;
 pub use tunic::{Tunic, poncho, tunic};
 
 use crate::geometry::World3;
+use crate::ids::VertexId;
 use crate::mesh::Mesh;
 
 /// A generated mesh and its positions in world space (m).
@@ -38,6 +39,17 @@ pub struct Sheet {
     pub mesh: Mesh,
     /// World positions (m).
     pub positions: Vec<World3>,
+    /// What the parts of its boundary are called. [`sew`] leaves this to its caller.
+    pub borders: Vec<Border>,
+}
+
+/// A part of a boundary with a name: a side of a rectangle, or an opening such as the waist.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Border {
+    /// Its name; generators say which they give.
+    pub name: &'static str,
+    /// The vertices on it, sorted.
+    pub vertices: Vec<VertexId>,
 }
 
 /// Triangles in world space without a material space: an obstacle.

@@ -1,7 +1,7 @@
 //! Sewing sheets together along their boundaries.
 
 use super::limits::check_triangles;
-use super::{GenerateError, Sheet};
+use super::{Border, GenerateError, Sheet};
 use crate::geometry::{Material2, World3};
 use crate::ids::VertexId;
 use crate::mesh::Mesh;
@@ -39,6 +39,20 @@ pub struct Sewn {
     pub sheet: Sheet,
     /// For every sheet the new index of each of its vertices.
     pub vertex_of: Vec<Vec<VertexId>>,
+}
+
+impl Sewn {
+    /// Names a part of the boundary, given by vertices of the sheets that were sewn.
+    pub(super) fn name_border(&mut self, name: &'static str, parts: &[Chain]) {
+        let number = |part: &Chain| {
+            let vertex_of = &self.vertex_of[part.sheet];
+            part.vertices.iter().map(|v| vertex_of[v.index()]).collect::<Vec<_>>()
+        };
+        let mut vertices: Vec<VertexId> = parts.iter().flat_map(number).collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        self.sheet.borders.push(Border { name, vertices });
+    }
 }
 
 /// Sews sheets into one mesh: vertices joined by a seam become one vertex in the mean of their
@@ -106,7 +120,8 @@ pub fn sew(sheets: &[Sheet], seams: &[Seam]) -> Result<Sewn, GenerateError> {
     let positions = sums.iter().map(|(sum, count)| sum / *count).collect();
     let vertex_of =
         firsts.windows(2).map(|w| number[w[0]..w[1]].iter().map(|&v| VertexId(v)).collect());
-    Ok(Sewn { vertex_of: vertex_of.collect(), sheet: Sheet { mesh, positions } })
+    let sheet = Sheet { mesh, positions, borders: Vec::new() };
+    Ok(Sewn { vertex_of: vertex_of.collect(), sheet })
 }
 
 /// Moves the material coordinates of the sheets along u so that the sheets lie side by side, `gap`

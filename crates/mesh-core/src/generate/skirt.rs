@@ -35,7 +35,7 @@ impl Default for Skirt {
 /// to side, numbered around. The vertices lie on a cone; the facets between them are flat, and every
 /// panel is its part of the facets unrolled into a sector of a ring, so that the cloth is at rest to
 /// rounding. Panels lie side by side in material space, v pointing from hem to waist in their
-/// middle; normals point outwards. The hem may be narrower than the waist.
+/// middle; normals point outwards. The hem may be narrower than the waist. Borders: `hem`, `waist`.
 ///
 /// # Errors
 /// If a length is not positive, finite and within the limits; if the radii differ by more than the
@@ -84,10 +84,14 @@ pub fn skirt(skirt: &Skirt) -> Result<Sheet, GenerateError> {
         })?);
     }
     lay_out(&mut sheets, 0.05 * length);
-    let side =
-        |panel: usize, i: usize| Chain::new(panel, (0..=along).map(|j| lattice.vertex(i, j)));
+    let side = |panel: usize, i: usize| Chain::new(panel, lattice.column(i));
     let seams: Vec<Seam> = (0..panels)
         .map(|p| Seam { first: side(p, around), second: side((p + 1) % panels, 0) })
         .collect();
-    Ok(sew(&sheets, &seams)?.sheet)
+    let mut sewn = sew(&sheets, &seams)?;
+    for (name, j) in [("hem", 0), ("waist", along)] {
+        let rows: Vec<Chain> = (0..panels).map(|p| Chain::new(p, lattice.row(j))).collect();
+        sewn.name_border(name, &rows);
+    }
+    Ok(sewn.sheet)
 }

@@ -11,7 +11,7 @@ use std::f64::consts::{PI, TAU};
 /// rows. The vertices lie on the cylinder of `radius` (m), so that the tube is a prism; material
 /// space is the prism unrolled, with u around and v along, and the cloth is at rest exactly. A seam
 /// runs along it in the plane y = 0, x > 0, where the first and the last column share vertices.
-/// Normals point outwards.
+/// Normals point outwards. Borders: `lower` at z = 0, and `upper`.
 ///
 /// # Errors
 /// If a length is not positive, finite and within the limits, or if there are fewer than three
@@ -33,7 +33,11 @@ pub fn tube(radius: f64, length: f64, around: usize, along: usize) -> Result<She
             World3::new(radius * cosine, radius * sine, height(j))
         },
     )?;
-    let column = |i: usize| Chain::new(0, (0..=along).map(|j| lattice.vertex(i, j)));
+    let column = |i: usize| Chain::new(0, lattice.column(i));
     let seam = Seam { first: column(0), second: column(around) };
-    Ok(sew(&[sheet], &[seam])?.sheet)
+    let mut sewn = sew(&[sheet], &[seam])?;
+    for (name, j) in [("lower", 0), ("upper", along)] {
+        sewn.name_border(name, &[Chain::new(0, lattice.row(j))]);
+    }
+    Ok(sewn.sheet)
 }

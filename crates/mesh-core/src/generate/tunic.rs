@@ -48,7 +48,8 @@ impl Default for Tunic {
 /// planes y < 0 and y > 0, sewn at the shoulders and below the armholes at the sides, and sleeves
 /// (panels 2 at x > 0 and 3 at x < 0) folded at the shoulder, sewn into the armholes and to
 /// themselves under the arm. The shoulders lie at z = 0, the hem below, x = 0 in the middle; normals
-/// point outwards. Openings: hem, neck, and two cuffs or armholes.
+/// point outwards. Borders: `hem`, `neck`, and at x > 0, on the right as seen from the front, and
+/// x < 0 `right-cuff` and `left-cuff`, or without sleeves `right-armhole` and `left-armhole`.
 ///
 /// A gap of a tenth of the shortest cell keeps the two layers apart, so the cells at seams and folds
 /// are longer than at rest by up to 0.2 %; all others are at rest to rounding.
@@ -67,20 +68,27 @@ pub fn tunic(tunic: &Tunic) -> Result<Sheet, GenerateError> {
     let body = Body::new(*tunic)?;
     let mut sheets = body.sheets()?;
     let mut seams = body.shoulder_seams();
+    let mut borders = vec![("hem", body.hem().into()), ("neck", body.neck().into())];
     for side in 0..2 {
         seams.push(body.side_seam(side));
         if let Some((sleeve, sheet)) = body.sleeve(side)? {
+            let cuff = Chain::new(sheets.len(), sleeve.column(sleeve.cells[0]));
+            borders.push((["right-cuff", "left-cuff"][side], vec![cuff]));
             seams.extend(body.sleeve_seams(side, sleeve, sheets.len()));
             sheets.push(sheet);
+        } else {
+            borders.push((["right-armhole", "left-armhole"][side], body.armhole(side).into()));
         }
     }
     lay_out(&mut sheets, tunic.cell);
-    Ok(sew(&sheets, &seams)?.sheet)
+    let mut sewn = sew(&sheets, &seams)?;
+    borders.iter().for_each(|(name, parts)| sewn.name_border(name, parts));
+    Ok(sewn.sheet)
 }
 
 /// A poncho: front (panel 0) and back (panel 1), rectangles of `width` by `length` (m) sewn at the
 /// shoulders beside a slit of `neck_width` (m) for the neck, of about `cell` (m) long mesh edges. It
-/// hangs as a [`tunic`] does and has two boundaries, outline and neck.
+/// hangs as a [`tunic`] does. Borders: `neck`, and `outline` all around.
 ///
 /// # Errors
 /// If a length is not positive, finite and within the limits, the neck is wider than the garment, or
@@ -100,7 +108,12 @@ pub fn poncho(width: f64, length: f64, neck_width: f64, cell: f64) -> Result<She
     })?;
     let mut sheets = body.sheets()?;
     lay_out(&mut sheets, cell);
-    Ok(sew(&sheets, &body.shoulder_seams())?.sheet)
+    let mut sewn = sew(&sheets, &body.shoulder_seams())?;
+    sewn.name_border("neck", &body.neck());
+    let [columns, rows] = body.lattice.cells;
+    let sides = [0, 1].map(|layer| [0, columns].map(|i| body.column(layer, i, 0..=rows)));
+    sewn.name_border("outline", &[&body.hem()[..], &sides.concat()].concat());
+    Ok(sewn.sheet)
 }
 
 /// The right side is x > 0; there the front's last column meets the back's first. Seen from the
@@ -199,6 +212,24 @@ impl Body {
         Chain::new(layer, rows.map(|j| self.lattice.vertex(i, j)))
     }
 
+    /// The lowest row of front and back.
+    fn hem(&self) -> [Chain; 2] {
+        [0, 1].map(|layer| Chain::new(layer, self.lattice.row(0)))
+    }
+
+    /// The highest row of front and back between the shoulders.
+    fn neck(&self) -> [Chain; 2] {
+        let top = self.lattice.cells[1];
+        let columns = self.shoulder..=self.shoulder + self.neck;
+        [0, 1].map(|layer| Chain::new(layer, columns.clone().map(|i| self.lattice.vertex(i, top))))
+    }
+
+    /// The edges of front and back beside an arm.
+    fn armhole(&self, side: usize) -> [Chain; 2] {
+        let ([a, b], [last, top]) = (SIDES[side], self.lattice.cells);
+        [(a, last), (b, 0)].map(|(layer, i)| self.column(layer, i, self.below..=top))
+    }
+
     fn shoulder_seams(&self) -> Vec<Seam> {
         let [columns, top] = self.lattice.cells;
         let on_top = |i| self.lattice.vertex(i, top);
@@ -245,18 +276,15 @@ impl Body {
     }
 
     fn sleeve_seams(&self, side: usize, sleeve: Lattice, sheet: usize) -> [Seam; 3] {
-        let ([a, b], [last, top]) = (SIDES[side], self.lattice.cells);
+        let [front, back] = self.armhole(side);
         let [along, around] = sleeve.cells;
         let chain = |vertices: Vec<VertexId>| Chain { sheet, vertices };
         let end = |j: usize| sleeve.vertex(0, j);
         let under = |j: usize| chain((0..=along).map(|i| sleeve.vertex(i, j)).collect());
         [
+            Seam { first: front, second: chain((0..=self.beside).map(end).collect()) },
             Seam {
-                first: self.column(a, last, self.below..=top),
-                second: chain((0..=self.beside).map(end).collect()),
-            },
-            Seam {
-                first: self.column(b, 0, self.below..=top),
+                first: back,
                 second: chain((0..=self.beside).map(|k| end(around - k)).collect()),
             },
             Seam { first: under(0), second: under(around) },

@@ -9,7 +9,7 @@ use crate::mesh::Mesh;
 /// A cloth mesh read from an OBJ file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjCloth {
-    /// Topology and material space, all in panel 0.
+    /// Topology and material space; the panels are the [groups](ObjMesh::groups).
     pub mesh: Mesh,
     /// World positions of the vertices (m).
     pub positions: Vec<World3>,
@@ -37,7 +37,7 @@ impl ObjMesh {
 
     /// The cloth mesh whose material coordinates (m) are x and y of another OBJ file: the same
     /// faces in the same order over a list of vertices of its own, as ARCSim uses it. Texture
-    /// coordinates of both files are ignored.
+    /// coordinates of both files and groups of the other are ignored.
     ///
     /// # Errors
     /// If the faces differ in number or corners; and as for [`ObjMesh::to_mesh`], where an error in
@@ -77,7 +77,7 @@ impl ObjMesh {
         material_file: &ObjMesh,
     ) -> Result<ObjCloth, ObjError> {
         let (triangles, kept) = self.used_only();
-        let panels = vec![0; triangles.len()];
+        let panels = (0..triangles.len()).map(|t| self.group(t) as u32).collect();
         let mesh = Mesh::new(kept.len(), triangles, material, panels)
             .map_err(|error| self.located(error, &kept, material_file))?;
         let mut vertex_of_file = vec![None; self.positions.len()];

@@ -10,6 +10,7 @@
 
 use super::ObjError;
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Limit of vertices and of triangles: half-edges are 32-bit numbers, and files of more than this
@@ -31,6 +32,10 @@ pub(super) struct Guarded {
     pub(super) face_lines: Vec<u32>,
     /// Face of every triangle of the fans.
     pub(super) face_of: Vec<u32>,
+    /// Names of the groups that have faces, in order of their first ones.
+    pub(super) groups: Vec<String>,
+    /// Group of every face.
+    pub(super) group_of_face: Vec<u32>,
     /// Number of single corners in front of the faces.
     pub(super) n_numbering: usize,
     /// True if the corners have texture coordinates.
@@ -88,6 +93,8 @@ pub(super) fn guard(bytes: &[u8]) -> Result<Guarded, ObjError> {
     // Faces wait until all vertices are known: they may refer to later ones.
     let mut corners: Vec<Corner> = Vec::new();
     let mut face_ends: Vec<usize> = Vec::new();
+    // What a group is called before the first is named is part of the format.
+    let (mut name, mut group, mut number_of) = ("default".to_owned(), None, BTreeMap::new());
     let mut lines = bytes.split(|&b| b == b'\n').enumerate();
     while let Some((at, first)) = lines.next() {
         let line = at + 1;
@@ -107,6 +114,10 @@ pub(super) fn guard(bytes: &[u8]) -> Result<Guarded, ObjError> {
         match words.next() {
             Some("v") => out.coordinates(line, "v", &words.collect::<Vec<_>>())?,
             Some("vt") => out.coordinates(line, "vt", &words.collect::<Vec<_>>())?,
+            Some("g" | "o") => {
+                name = words.collect::<Vec<_>>().join(" ");
+                group = None;
+            }
             Some("f") => {
                 let begin = corners.len();
                 for word in words {
@@ -124,6 +135,14 @@ pub(super) fn guard(bytes: &[u8]) -> Result<Guarded, ObjError> {
                 let face = out.face_lines.len() as u32;
                 out.face_of.extend(std::iter::repeat_n(face, got - 2));
                 out.face_lines.push(line as u32);
+                // Groups without faces do not count.
+                let number = *group.get_or_insert_with(|| {
+                    *number_of.entry(name.clone()).or_insert_with(|| {
+                        out.groups.push(name.clone());
+                        out.groups.len() as u32 - 1
+                    })
+                });
+                out.group_of_face.push(number);
                 face_ends.push(corners.len());
             }
             _ => {}

@@ -2,9 +2,9 @@
 //!
 //! Reading goes through the library parser `tobj` in f64. A guard in front of it checks what the
 //! library lets pass and remembers lines, so that every error names one. Read are `v` (three
-//! coordinates; a weight or a colour after them is ignored), `vt` (two coordinates) and `f`
-//! (polygons are cut into fans, relative indices are resolved). Everything else is ignored: `vn`,
-//! `vv`, lines, points, groups, objects, smoothing, materials; `mtllib` is never opened.
+//! coordinates; a weight or a colour after them is ignored), `vt` (two coordinates), `f` (polygons
+//! are cut into fans, relative indices are resolved) and the names after `g` and `o`. Everything else
+//! is ignored: `vn`, `vv`, lines, points, smoothing, materials; `mtllib` is never opened.
 //!
 //! ```
 //! use mesh_core::obj;
@@ -46,6 +46,11 @@ pub struct ObjMesh {
     /// Texture coordinates of every triangle's corners, if the faces have them (m where they are
     /// used as material coordinates) (m).
     pub texture: Option<Vec<[Material2; 3]>>,
+    /// Names of the groups that have faces, in order of their first ones: what stands after the last
+    /// `g` or `o` before a face, or `default` before any.
+    pub groups: Vec<String>,
+    /// Group of every face.
+    group_of_face: Vec<u32>,
     /// The face each triangle was cut from.
     face_of: Vec<u32>,
     /// The line each face begins on, from 1.
@@ -66,6 +71,20 @@ impl ObjMesh {
     /// If there is no such triangle.
     pub fn face(&self, triangle: usize) -> usize {
         self.face_of[triangle] as usize
+    }
+
+    /// The group that a triangle belongs to, an index into `groups`.
+    ///
+    /// # Panics
+    /// If there is no such triangle.
+    pub fn group(&self, triangle: usize) -> usize {
+        self.group_of_face[self.face(triangle)] as usize
+    }
+
+    /// Makes all groups one.
+    pub fn ungroup(&mut self) {
+        self.groups.truncate(1);
+        self.group_of_face.fill(0);
     }
 
     /// The line in the file that a triangle comes from, counted from 1.
@@ -132,6 +151,8 @@ pub fn read(bytes: &[u8]) -> Result<ObjMesh, ObjError> {
         triangles: triangles.collect(),
         positions,
         texture,
+        groups: guarded.groups,
+        group_of_face: guarded.group_of_face,
         face_of: guarded.face_of,
         face_lines: guarded.face_lines,
         vertex_lines: guarded.vertex_lines,

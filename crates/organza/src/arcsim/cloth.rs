@@ -2,6 +2,8 @@
 
 use serde_json::Value;
 
+use std::collections::BTreeMap;
+
 use super::format::{ArcsimCloth, ArcsimMaterial, ArcsimRemeshing, ArcsimTransform};
 use super::translate::Notes;
 use crate::scene::format::{
@@ -57,6 +59,7 @@ pub(super) fn translate(
         mesh: MeshFile { obj: Some(cloth.mesh.clone()), ..MeshFile::default() },
         transform: translate_transform(cloth.transform, [&transform, &transform], notes),
         fabric: FabricChoice::Measured(data),
+        panel_fabrics: BTreeMap::new(),
         thicken: material.thicken.unwrap_or(1.0),
         multipliers: Multipliers {
             density: material.density_mult.unwrap_or(1.0),

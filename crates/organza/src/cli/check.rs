@@ -1,6 +1,7 @@
 //! `organza check`.
 
 use std::fmt::{self, Write};
+use std::ops::Range;
 
 use organza::fabric::Fabric;
 use organza::record::{garments, place};
@@ -42,21 +43,25 @@ fn write(out: &mut String, loaded: &Loaded, world: &World) -> fmt::Result {
         scene.substeps,
         scene.step_s(),
     )?;
-    for (cloth, garment) in scene.cloths.iter().zip(garments(world)) {
-        let area: f64 = garment.material.iter().map(area).sum();
+    let parts = world.garments.iter().zip(garments(world));
+    for (cloth, (part, garment)) in scene.cloths.iter().zip(parts) {
+        let (area, mass) = area_and_mass(world, &part.panels);
         let density = cloth.fabric.density_kg_per_m2() * cloth.multipliers.density;
         writeln!(
             out,
-            "cloth {}: {} vertices, {} faces, {area:.4} m², {:.4} kg, {} fabric of {density:.4} kg/m²",
+            "cloth {}: {} vertices, {} faces, {area:.4} m², {mass:.4} kg, {} fabric of {density:.4} kg/m²",
             cloth.name,
             garment.points.len(),
             garment.triangles.len(),
-            area * density,
             match cloth.fabric {
                 Fabric::Orthotropic(_) => "orthotropic",
                 Fabric::Measured(_) => "measured",
             },
         )?;
+        if !cloth.panel_fabrics.is_empty() {
+            let panels: Vec<&str> = cloth.panel_fabrics.iter().map(|(p, _)| p.as_str()).collect();
+            writeln!(out, "  panels of other fabrics: {}", panels.join(", "))?;
+        }
         options(out, cloth)?;
     }
     let held: usize = world.handles.list().iter().map(|handle| handle.held.len()).sum();
@@ -80,6 +85,12 @@ fn options(out: &mut String, cloth: &Cloth) -> fmt::Result {
     }
 }
 
-fn area([a, b, c]: &[[f64; 2]; 3]) -> f64 {
-    0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+/// Area (m²) and mass (kg) of some panels.
+fn area_and_mass(world: &World, panels: &Range<u32>) -> (f64, f64) {
+    let (mesh, density) = (&world.cloth.mesh, world.cloth.densities());
+    let triangles = mesh.triangle_ids().zip(mesh.panels());
+    let inside = triangles.filter(|(_, panel)| panels.contains(panel));
+    inside.fold((0.0, 0.0), |(area, mass), (t, &panel)| {
+        (area + mesh.area(t), mass + mesh.area(t) * density[panel as usize])
+    })
 }

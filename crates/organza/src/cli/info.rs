@@ -49,7 +49,8 @@ fn seconds(s: f64) -> String {
 fn write(out: &mut String, info: &Info) -> fmt::Result {
     writeln!(out, "{}: scene {}, recorded by {}", info.recording, info.scene, info.software)?;
     let n = info.frames.len();
-    let planned = info.frames_planned.map_or(String::new(), |n| format!(" of {}", n + 1));
+    let planned =
+        info.frames_planned.map_or(String::new(), |n| format!(" of {}", n.saturating_add(1)));
     writeln!(out, "{}; {n}{planned} frames, frame 0 is the initial state", info.status.message)?;
     let checkpoints: Vec<String> = info.checkpoints.iter().map(u64::to_string).collect();
     writeln!(out, "checkpoints: {}", join(&checkpoints))?;

@@ -47,5 +47,27 @@ pub fn write_obj(out: &mut impl Write, garments: &[OwnedGarment]) -> io::Result<
 }
 
 fn is_plain(c: char) -> bool {
-    !c.is_whitespace() && !c.is_control()
+    // A comment would cut the name, a backslash at its end would join the next line.
+    !c.is_whitespace() && !c.is_control() && !['#', '\\'].contains(&c)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_name_changes_what_is_read_back() {
+        let garments = ["plain", "a # b", "trailing\\", "\\", ""].map(|name| OwnedGarment {
+            name: name.into(),
+            points: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+            triangles: vec![[0, 1, 2]],
+            material: vec![[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]],
+            color: [1.0; 4],
+        });
+        let mut bytes = Vec::new();
+        write_obj(&mut bytes, &garments).unwrap();
+        let file = mesh_core::obj::read(&bytes).unwrap();
+        assert_eq!((file.positions.len(), file.triangles.len()), (15, 5));
+        assert_eq!(file.groups, ["plain", "a___b", "trailing_", "_", ""]);
+    }
 }

@@ -86,6 +86,7 @@ pub fn place(loaded: &Loaded, error: &BuildError) -> SceneErrors {
         }
         BuildError::Generate { cloth, source } => (named(cloth, "mesh"), source.to_string()),
         BuildError::Mesh { cloth, source } => (named(cloth, "mesh"), source.to_string()),
+        BuildError::Panel { cloth, message } => (named(cloth, "panel_fabrics"), message.clone()),
         BuildError::Fabric { cloth, source } => (named(cloth, "fabric"), source.to_string()),
         BuildError::Handle { handle, message } => {
             (format!("handles[{handle}].select"), message.clone())

@@ -7,7 +7,9 @@ use io_mcap::{Checkpoint, Overwrite, Recorder, Recording, Status};
 
 use super::settings::same_version;
 use super::{Run, RunError, Settings, place};
+use crate::build::BuildError;
 use crate::checkpoint::restore;
+use crate::scene::Loaded;
 use crate::world::World;
 
 /// What became of a recording that was to be continued.
@@ -44,6 +46,26 @@ pub enum Resumed {
 /// # Errors
 /// The recording cannot be read, does not hold what the run needs, or cannot be written.
 pub fn resume(path: &Path, frames: Option<u32>) -> Result<Resumed, RunError> {
+    continue_with(path, frames, None::<fn(&Loaded) -> Result<World, BuildError>>)
+}
+
+/// As [`resume`], of a run that began with [`Run::start_with`] and the same `build`.
+///
+/// # Errors
+/// As for [`resume`].
+pub fn resume_with(
+    path: &Path,
+    frames: Option<u32>,
+    build: impl FnOnce(&Loaded) -> Result<World, BuildError>,
+) -> Result<Resumed, RunError> {
+    continue_with(path, frames, Some(build))
+}
+
+fn continue_with(
+    path: &Path,
+    frames: Option<u32>,
+    build: Option<impl FnOnce(&Loaded) -> Result<World, BuildError>>,
+) -> Result<Resumed, RunError> {
     let mut recording = Recording::open(path).map_err(RunError::recording(path))?;
     let unusable = |what| RunError::Unusable { path: path.to_owned(), what };
     let mut settings = Settings::of(&recording).map_err(unusable)?;
@@ -72,7 +94,15 @@ pub fn resume(path: &Path, frames: Option<u32>) -> Result<Resumed, RunError> {
 
     let loaded = settings.load(&mut recording, path)?;
     settings.check_frames(&loaded)?;
-    let mut world = World::new(&loaded).map_err(|error| place(&loaded, &error))?;
+    let world = match build {
+        Some(build) => build(&loaded),
+        None if settings.own_world => {
+            let what = "its world was built by a program of its own, which alone can continue it";
+            return Err(unusable(what.into()));
+        }
+        None => World::new(&loaded),
+    };
+    let mut world = world.map_err(|error| place(&loaded, &error))?;
     let version = same_version(&recording);
     let mut run = if let Some(checkpoint) = &checkpoint {
         restore(&mut world, checkpoint)

@@ -19,6 +19,7 @@ const SETS: &str = "sets";
 const ALLOW_UNSUPPORTED: &str = "allow_unsupported";
 const FRAMES: &str = "frames";
 const CHECKPOINT_EVERY: &str = "checkpoint_every_frames";
+const OWN_WORLD: &str = "own_world";
 
 /// How a run was made. With the attached files it decides every bit of its frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,6 +30,10 @@ pub struct Settings {
     pub frames: u32,
     /// Frames from checkpoint to checkpoint.
     pub checkpoint_every: u32,
+    /// True if the world is not just what the scene says, see [`Run::start_with`].
+    ///
+    /// [`Run::start_with`]: super::Run::start_with
+    pub own_world: bool,
 }
 
 impl Settings {
@@ -44,7 +49,8 @@ impl Settings {
         let frames = options.frames.unwrap_or(loaded.scene.frames);
         let every = options.checkpoint_every;
         let every = every.unwrap_or(loaded.scene.recording.checkpoint_every_frames).max(1);
-        let settings = Self { load: load.clone(), frames, checkpoint_every: every };
+        let load = load.clone();
+        let settings = Self { load, frames, checkpoint_every: every, own_world: false };
         settings.check_frames(loaded)?;
         Ok(settings)
     }
@@ -72,7 +78,7 @@ impl Settings {
     pub fn header(&self, loaded: &Loaded) -> Header {
         let scene = &loaded.scene;
         let text = |value: serde_json::Value| value.to_string();
-        let metadata = BTreeMap::from([
+        let mut metadata = BTreeMap::from([
             ("name".to_owned(), scene.name.clone()),
             ("frames_per_second".to_owned(), scene.frames_per_second.to_string()),
             ("substeps".to_owned(), scene.substeps.to_string()),
@@ -82,6 +88,9 @@ impl Settings {
             (FRAMES.to_owned(), self.frames.to_string()),
             (CHECKPOINT_EVERY.to_owned(), self.checkpoint_every.to_string()),
         ]);
+        if self.own_world {
+            metadata.insert(OWN_WORLD.to_owned(), true.to_string());
+        }
         let attachments = loaded.sources.iter().enumerate().map(|(k, source)| {
             let name = if k == 0 {
                 let file = Path::new(&source.name).file_name();
@@ -116,7 +125,9 @@ impl Settings {
                 .map_err(|_| format!("its metadata has `{SETS}` {sets:?}, not a list of texts"))?,
             allow_unsupported: get(ALLOW_UNSUPPORTED)? == "true",
         };
-        Ok(Self { load, frames: count(FRAMES)?, checkpoint_every: count(CHECKPOINT_EVERY)? })
+        let (frames, checkpoint_every) = (count(FRAMES)?, count(CHECKPOINT_EVERY)?);
+        let own_world = metadata.get(OWN_WORLD).is_some_and(|own| own == "true");
+        Ok(Self { load, frames, checkpoint_every, own_world })
     }
 
     /// Loads the scene that is attached to a recording at `path`.

@@ -36,8 +36,12 @@ pub(crate) struct At<'a> {
 impl<'a> At<'a> {
     /// The place of a key below this one. Dots separate several keys.
     pub(crate) fn key(&self, keys: &str) -> At<'a> {
-        let path = keys.split('.').fold(self.path.clone(), |path, key| path.key(key));
-        At { path, all: self.all }
+        keys.split('.').fold(self.clone(), |at, key| at.member(key))
+    }
+
+    /// The place of a key that may hold dots itself.
+    pub(crate) fn member(&self, key: &str) -> At<'a> {
+        At { path: self.path.key(key), all: self.all }
     }
 
     pub(crate) fn index(&self, index: usize) -> At<'a> {

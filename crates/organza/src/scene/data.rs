@@ -2,7 +2,7 @@
 
 use super::format::{
     BendingModel, Camera, Damping, Disc, Grid, Integrator, LinearSolver, Multipliers, Newton,
-    Recording, Remeshing, Select, Skirt, Spin, Tube, Wind,
+    Poncho, Recording, Remeshing, Select, Skirt, Spin, Tube, Tunic, Wind,
 };
 use super::motion::{Motion, Transform};
 use crate::fabric::Fabric;
@@ -72,6 +72,8 @@ pub struct Cloth {
     pub transform: Transform,
     /// What the cloth is made of.
     pub fabric: Fabric,
+    /// What single panels are made of instead, by name.
+    pub panel_fabrics: Vec<(String, Fabric)>,
     /// Multipliers of the fabric, `thicken` included.
     pub multipliers: Multipliers,
     /// Smallest and largest principal stretch, min < 1 < max (1).
@@ -107,6 +109,10 @@ pub enum MeshSource {
     Tube(Tube),
     /// A skirt.
     Skirt(Skirt),
+    /// A tunic.
+    Tunic(Tunic),
+    /// A poncho.
+    Poncho(Poncho),
 }
 
 /// Holds or moves vertices of a cloth.

@@ -31,6 +31,8 @@ pub const MAX_AIR_DENSITY_KG_PER_M3: f64 = 1e4;
 pub const MAX_FACTOR: f64 = 1e6;
 /// Triangles that a generator makes.
 pub const MAX_TRIANGLES: f64 = mesh_core::generate::MAX_TRIANGLES as f64;
+/// Triangles of all cloths together: several gigabytes of mesh and matrix.
+pub const MAX_SCENE_TRIANGLES: usize = 4 * mesh_core::generate::MAX_TRIANGLES;
 /// Smallest length of a generated mesh (m).
 pub const MIN_SIZE_M: f64 = mesh_core::generate::MIN_SIZE;
 /// Vertices that remeshing may make.

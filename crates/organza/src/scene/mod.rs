@@ -36,6 +36,7 @@ pub use issue::{Issue, IssueKind, Origin, Position, SceneErrors};
 pub use path::{PathError, Segment, ValuePath};
 pub use places::Places;
 pub use text::MAX_DEPTH;
+pub(crate) use typed::suggestion;
 
 use std::path::Path;
 

@@ -1,5 +1,7 @@
 //! A piece of cloth: mesh, fabric, start, damping, remeshing.
 
+use std::collections::BTreeMap;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -22,6 +24,9 @@ pub struct ClothFile {
     pub transform: Transform,
     /// What the cloth is made of.
     pub fabric: FabricChoice,
+    /// Fabrics of single panels, by the panel's name; the names are those that handles select.
+    #[serde(default)]
+    pub panel_fabrics: BTreeMap<String, FabricChoice>,
     /// Layers of fabric: multiplies density, stretching and bending stiffness (1).
     #[serde(default = "one")]
     pub thicken: f64,

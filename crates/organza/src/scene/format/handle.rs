@@ -70,17 +70,28 @@ impl<'de> Deserialize<'de> for ClothRef {
     }
 }
 
-/// Which vertices of a cloth. Sides and corners are those of the rectangle around the flat pattern
-/// (u to the right, v upward).
+/// Which vertices of a cloth. Sides and corners are those of the flat pattern (u to the right, v
+/// upward).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Select {
     /// Vertices by number, counted from 0 in the order of the mesh file.
     Vertices(Vec<u32>),
-    /// The vertices nearest to corners of the pattern.
+    /// The vertices nearest to corners of the rectangle around the pattern.
     Corners(Vec<Corner>),
-    /// All vertices on sides of the pattern.
+    /// All vertices on sides of the pattern: of a grid, the upper and lower openings of a tube, waist
+    /// and hem of a skirt, the hem of a tunic; of a mesh from a file those that touch the rectangle
+    /// around the pattern.
     Sides(Vec<Side>),
+    /// All vertices on borders of a generated mesh. A grid has `left`, `right`, `lower`, `upper`; a
+    /// disc `rim`; a tube `lower`, `upper`; a skirt `hem`, `waist`; a tunic `hem`, `neck`, and with
+    /// sleeves `left-cuff`, `right-cuff`, without them `left-armhole`, `right-armhole` (right is x > 0
+    /// before the transform); a poncho `neck`, `outline`.
+    Borders(Vec<String>),
+    /// All vertices of panels, outlines included. The panels of a mesh file are its groups (`g`) and
+    /// objects (`o`) by name; those of a tunic `front`, `back`, `right-sleeve`, `left-sleeve`; of a
+    /// poncho `front`, `back`; of other meshes `0`, `1` and so on.
+    Panels(Vec<String>),
     /// All vertices inside a rectangle of the pattern, its border included.
     Box(PatternBox),
     /// All vertices on the border of the cloth.
@@ -103,7 +114,7 @@ pub enum Corner {
     UpperLeft,
 }
 
-/// A side of the rectangle around the flat pattern.
+/// A side of the flat pattern.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Side {

@@ -3,7 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Where the mesh of a cloth comes from: exactly one of `obj`, `grid`, `disc`, `tube`, `skirt`.
+/// Where the mesh of a cloth comes from: exactly one of `obj`, `grid`, `disc`, `tube`, `skirt`,
+/// `tunic`, `poncho`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MeshFile {
@@ -20,6 +21,10 @@ pub struct MeshFile {
     pub tube: Option<Tube>,
     /// A skirt sewn from flat panels.
     pub skirt: Option<Skirt>,
+    /// A tunic with or without sleeves, sewn from a front and a back.
+    pub tunic: Option<Tunic>,
+    /// A poncho, sewn from a front and a back.
+    pub poncho: Option<Poncho>,
 }
 
 /// A flat rectangle: pattern (u, v) from (0, 0) to `size_m`, at (u, v, 0) in space.
@@ -86,6 +91,48 @@ pub struct Skirt {
     pub length_m: f64,
     /// Number of cells across and along each panel; at least 3 around in all.
     pub cells: [u32; 2],
+}
+
+/// A tunic that hangs flat: front at y < 0, back at y > 0, shoulders at z = 0, hem below, x = 0 in the
+/// middle. The pieces lie side by side in the pattern: front, back, sleeves; v runs upward in front and
+/// back, u along the arm in the sleeves.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Tunic {
+    /// Width from the shoulders down to the underarm (m).
+    pub width_m: f64,
+    /// Width at the hem; default is the width above (m).
+    #[serde(default)]
+    pub hem_width_m: Option<f64>,
+    /// Length from the shoulders to the hem (m).
+    pub length_m: f64,
+    /// Depth of the armholes below the shoulders (m).
+    pub armhole_m: f64,
+    /// Width of the opening for the neck (m).
+    pub neck_width_m: f64,
+    /// Depth of the neckline in front and back (m).
+    #[serde(default)]
+    pub neck_depth_m: [f64; 2],
+    /// Length of the sleeves; absent means open armholes (m).
+    #[serde(default)]
+    pub sleeve_m: Option<f64>,
+    /// About how long the edges of the mesh are (m).
+    pub cell_m: f64,
+}
+
+/// A poncho: two rectangles sewn at the shoulders beside a slit for the neck. It hangs flat as a tunic
+/// does, and its pattern lies as that of a tunic.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Poncho {
+    /// Width (m).
+    pub width_m: f64,
+    /// Length from the shoulders down (m).
+    pub length_m: f64,
+    /// Width of the opening for the neck (m).
+    pub neck_width_m: f64,
+    /// About how long the edges of the mesh are (m).
+    pub cell_m: f64,
 }
 
 fn default_panels() -> u32 {

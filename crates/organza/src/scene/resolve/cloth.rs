@@ -35,10 +35,21 @@ pub(super) fn resolve(
         stretching: cloth.multipliers.stretching * cloth.thicken,
         bending: cloth.multipliers.bending * cloth.thicken,
     };
-    let fabric = fabric(cloth.fabric, &at.key("fabric"), context);
-    if let Some(fabric) = &fabric {
+    let common = fabric(cloth.fabric, &at.key("fabric"), context);
+    let panels = at.key("panel_fabrics");
+    let panel_fabrics: Vec<(String, Option<Fabric>)> = cloth
+        .panel_fabrics
+        .into_iter()
+        .map(|(panel, choice)| {
+            let fabric = fabric(choice, &panels.member(&panel), context);
+            (panel, fabric)
+        })
+        .collect();
+    for fabric in common.iter().chain(panel_fabrics.iter().filter_map(|(_, f)| f.as_ref())) {
         check_products(fabric, multipliers, at);
     }
+    let panel_fabrics: Option<Vec<_>> =
+        panel_fabrics.into_iter().map(|(panel, fabric)| Some((panel, fabric?))).collect();
     let mesh = mesh::resolve(cloth.mesh, &cloth.transform, at, context);
     super::handle::check_transform(&cloth.transform, &at.key("transform"));
     if let Some(limits) = cloth.strain_limits {
@@ -58,7 +69,8 @@ pub(super) fn resolve(
         name,
         mesh: mesh?,
         transform: cloth.transform,
-        fabric: fabric?,
+        fabric: common?,
+        panel_fabrics: panel_fabrics?,
         multipliers,
         strain_limits: cloth.strain_limits,
         bending: cloth.bending,

@@ -71,6 +71,7 @@ fn check_select(select: &Select, at: &At<'_>) {
         Select::Vertices(list) => list.is_empty(),
         Select::Corners(list) => list.is_empty(),
         Select::Sides(list) => list.is_empty(),
+        Select::Borders(list) | Select::Panels(list) => list.is_empty(),
         Select::Box(area) => {
             at.key("box.min").coordinates(&area.min);
             at.key("box.max").coordinates(&area.max);

@@ -2,7 +2,7 @@
 
 use super::super::check::At;
 use super::super::data::MeshSource;
-use super::super::format::{Disc, Grid, MeshFile, Skirt, Tube};
+use super::super::format::{Disc, Grid, MeshFile, Poncho, Skirt, Tube, Tunic};
 use super::super::limits::{MAX_COORDINATE_M, MAX_MESH_BYTES, MAX_TRIANGLES};
 use super::super::motion::Transform;
 use super::{Context, beyond};
@@ -15,7 +15,7 @@ pub(super) fn resolve(
     context: &mut Context<'_>,
 ) -> Option<MeshSource> {
     let at = cloth.key("mesh");
-    let MeshFile { obj, material_obj, grid, disc, tube, skirt } = mesh;
+    let MeshFile { obj, material_obj, grid, disc, tube, skirt, tunic, poncho } = mesh;
     if material_obj.is_some() && obj.is_none() {
         at.key("material_obj").complain("needs `obj`, whose flat pattern it is");
     }
@@ -25,12 +25,15 @@ pub(super) fn resolve(
         disc.map(MeshSource::Disc),
         tube.map(MeshSource::Tube),
         skirt.map(MeshSource::Skirt),
+        tunic.map(MeshSource::Tunic),
+        poncho.map(MeshSource::Poncho),
     ];
     let mut given = sources.into_iter().flatten();
     let (first, more) = (given.next(), given.count());
     let Some(source) = first.filter(|_| more == 0) else {
         let n = if more == 0 { 0 } else { more + 1 };
-        at.complain(format!("must have exactly one of obj, grid, disc, tube, skirt; has {n}"));
+        let all = "obj, grid, disc, tube, skirt, tunic, poncho";
+        at.complain(format!("must have exactly one of {all}; has {n}"));
         return None;
     };
     match &source {
@@ -44,6 +47,8 @@ pub(super) fn resolve(
         MeshSource::Disc(disc) => check_disc(disc, &at.key("disc")),
         MeshSource::Tube(tube) => check_tube(tube, &at.key("tube")),
         MeshSource::Skirt(skirt) => check_skirt(skirt, &at.key("skirt")),
+        MeshSource::Tunic(tunic) => check_tunic(tunic, &at.key("tunic")),
+        MeshSource::Poncho(poncho) => check_poncho(poncho, &at.key("poncho")),
     }
     let reach = extent(&source) * transform.scale;
     if extent(&source) <= MAX_COORDINATE_M && reach > MAX_COORDINATE_M {
@@ -61,6 +66,11 @@ fn extent(source: &MeshSource) -> f64 {
         MeshSource::Disc(disc) => disc.radius_m,
         MeshSource::Tube(tube) => tube.radius_m.max(tube.length_m),
         MeshSource::Skirt(skirt) => skirt.waist_m.max(skirt.hem_m).max(skirt.length_m),
+        MeshSource::Tunic(tunic) => {
+            let reach = tunic.width_m + tunic.sleeve_m.unwrap_or(0.0);
+            reach.max(tunic.hem_width_m.unwrap_or(0.0)).max(tunic.length_m)
+        }
+        MeshSource::Poncho(poncho) => poncho.width_m.max(poncho.length_m),
     }
 }
 
@@ -106,6 +116,40 @@ fn check_skirt(skirt: &Skirt, at: &At<'_>) {
             "{} m is too short for hem {} m and waist {} m: their radii differ by {spread} m",
             skirt.length_m, skirt.hem_m, skirt.waist_m
         ));
+    }
+}
+
+fn check_tunic(tunic: &Tunic, at: &At<'_>) {
+    at.key("width_m").size(tunic.width_m);
+    at.key("length_m").size(tunic.length_m);
+    for (key, size) in [("hem_width_m", tunic.hem_width_m), ("sleeve_m", tunic.sleeve_m)] {
+        if let Some(size) = size {
+            at.key(key).size(size);
+        }
+    }
+    check_part(tunic.armhole_m, tunic.length_m, "length", &at.key("armhole_m"));
+    check_part(tunic.neck_width_m, tunic.width_m, "width", &at.key("neck_width_m"));
+    for (i, depth) in tunic.neck_depth_m.into_iter().enumerate() {
+        let at = at.key("neck_depth_m").index(i);
+        if !(0.0..=0.5 * tunic.length_m).contains(&depth) {
+            at.complain(format!("must lie between 0 and half of the length, got {depth}"));
+        }
+    }
+    at.key("cell_m").size(tunic.cell_m);
+}
+
+fn check_poncho(poncho: &Poncho, at: &At<'_>) {
+    at.key("width_m").size(poncho.width_m);
+    at.key("length_m").size(poncho.length_m);
+    check_part(poncho.neck_width_m, poncho.width_m, "width", &at.key("neck_width_m"));
+    at.key("cell_m").size(poncho.cell_m);
+}
+
+/// A length that must be smaller than another one of its garment (m).
+fn check_part(part: f64, whole: f64, name: &str, at: &At<'_>) {
+    at.size(part);
+    if whole > 0.0 && part >= whole {
+        at.complain(format!("{part} m is not below the {name} of the garment, {whole} m"));
     }
 }
 

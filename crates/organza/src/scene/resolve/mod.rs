@@ -26,7 +26,9 @@ pub(super) struct Context<'r> {
 impl Context<'_> {
     /// Reads a file named in the scene, once; a file that cannot be read is complained of at `at`.
     fn read(&mut self, at: &At<'_>, name: &str, max_bytes: u64) -> Option<&[u8]> {
-        let known = self.sources.iter().position(|source| source.name == name);
+        // The first is the scene, whose name may be that of a file it names.
+        let mut files = self.sources.iter().enumerate().skip(1);
+        let known = files.find(|(_, source)| source.name == name).map(|(i, _)| i);
         let index = known.or_else(|| {
             match (self.resolver)(&FileRequest { name, dialect: self.dialect, max_bytes }) {
                 Ok(bytes) => {
