@@ -1,0 +1,9 @@
+//! Collision geometry of deforming triangle meshes.
+#![forbid(unsafe_code)]
+
+mod aabb;
+mod bvh;
+mod morton;
+
+pub use aabb::Aabb;
+pub use bvh::Bvh;
