@@ -3,6 +3,7 @@
 
 mod aabb;
 mod bvh;
+pub mod ccd;
 mod morton;
 
 pub use aabb::Aabb;
