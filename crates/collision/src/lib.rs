@@ -4,6 +4,7 @@
 mod aabb;
 mod bvh;
 pub mod ccd;
+pub mod contour;
 pub mod distance;
 pub mod intersect;
 mod morton;

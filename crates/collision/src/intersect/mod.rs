@@ -33,15 +33,29 @@ fn side(a: &World3, b: &World3, c: &World3, d: &World3) -> f64 {
     orient3d(coord(a), coord(b), coord(c), coord(d))
 }
 
+/// Volumes whose signs tell how an edge and a triangle lie to each other.
+pub(crate) struct Volumes {
+    /// Of the triangle with either end of the edge.
+    pub(crate) ends: [f64; 2],
+    /// Of the edge with every side of the triangle.
+    pub(crate) sides: [f64; 3],
+}
+
+#[inline]
+pub(crate) fn volumes(p: &World3, q: &World3, [a, b, c]: &[World3; 3]) -> Volumes {
+    Volumes {
+        ends: [side(a, b, c, p), side(a, b, c, q)],
+        sides: [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)],
+    }
+}
+
 /// Edge from `p` to `q` against triangle `t`: the exact answer for the given coordinates, barring
 /// overflow and underflow of their products.
 pub fn edge_triangle(p: &World3, q: &World3, t: &[World3; 3]) -> Crossing {
-    let [a, b, c] = t;
-    let (above, below) = (side(a, b, c, p), side(a, b, c, q));
+    let Volumes { ends: [above, below], sides: around } = volumes(p, q, t);
     if (above > 0.0 && below > 0.0) || (above < 0.0 && below < 0.0) {
         return Crossing::Apart;
     }
-    let around = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
     let all = |f: fn(f64) -> bool| around.iter().all(|&s| f(s));
     if above == 0.0 && below == 0.0 {
         // A triangle without area is in a plane with the edge if that sees all of its sides so.
