@@ -87,6 +87,13 @@ mod tests {
     }
 
     #[test]
+    fn what_is_no_number_counts_as_absent() {
+        let odd = World3::new(f64::NAN, 1.0, 2.0);
+        let around = Aabb::around(&[odd, World3::zeros(), odd]);
+        assert_eq!(around, Aabb { lo: [0.0; 3], hi: [0.0, 1.0, 2.0] });
+    }
+
+    #[test]
     fn boxes_are_closed() {
         let unit = Aabb { lo: [0.0; 3], hi: [1.0; 3] };
         let corner = Aabb { lo: [1.0; 3], hi: [2.0; 3] };

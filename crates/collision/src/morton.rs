@@ -2,7 +2,7 @@
 
 use crate::Aabb;
 
-/// Bits per axis of a code.
+/// Most bits per axis of a code.
 const BITS: u32 = 21;
 /// Bits that one pass of the sort looks at.
 const DIGIT_BITS: u32 = 11;
@@ -22,28 +22,30 @@ fn spread(x: u64) -> u64 {
 pub(crate) fn order(boxes: &[Aabb]) -> Vec<u32> {
     let all = boxes.iter().fold(Aabb::EMPTY, |all, b| all.union(b));
     let widest = (0..3).map(|k| all.hi[k] - all.lo[k]).fold(0.0, f64::max);
+    // Some four cells per element on a surface, and more in a volume: finer ones sort no better.
+    let bits = ((boxes.len().max(1).ilog2() + 2) / 2 + 1).min(BITS);
     // Twice the centre, from the corner of all: halves cancel, and sums of large numbers are avoided.
-    let scale = if widest > 0.0 { 0.5 * f64::from((1u32 << BITS) - 1) / widest } else { 0.0 };
+    let scale = if widest > 0.0 { 0.5 * f64::from((1u32 << bits) - 1) / widest } else { 0.0 };
     let cell = |b: &Aabb, k: usize| {
         // A cast of what is no number or out of range saturates.
         (((b.lo[k] - all.lo[k]) + (b.hi[k] - all.lo[k])) * scale) as u64
     };
     let code = |b: &Aabb| spread(cell(b, 0)) | spread(cell(b, 1)) << 1 | spread(cell(b, 2)) << 2;
     let mut keys: Vec<(u64, u32)> = (0..).zip(boxes).map(|(i, b)| (code(b), i)).collect();
-    radix_sort(&mut keys);
+    radix_sort(&mut keys, 3 * bits);
     keys.into_iter().map(|(_, i)| i).collect()
 }
 
-/// Sorts by the first number, keeping the order of equal ones. Passes in which all digits agree are
-/// skipped.
-fn radix_sort(keys: &mut Vec<(u64, u32)>) {
+/// Sorts by the first number, of so many bits, keeping the order of equal ones. Passes in which all
+/// digits agree are skipped.
+fn radix_sort(keys: &mut Vec<(u64, u32)>, bits: u32) {
     if keys.len() < 1 << DIGIT_BITS {
         keys.sort_unstable();
         return;
     }
     let mut other = vec![(0, 0); keys.len()];
     let mut shift = 0;
-    while shift < 3 * BITS {
+    while shift < bits {
         let digit = |key: u64| (key >> shift) as usize & ((1 << DIGIT_BITS) - 1);
         let mut starts = vec![0usize; 1 << DIGIT_BITS];
         keys.iter().for_each(|&(key, _)| starts[digit(key)] += 1);
@@ -87,7 +89,7 @@ mod tests {
             .collect();
         let mut expected = keys.clone();
         expected.sort_unstable();
-        radix_sort(&mut keys);
+        radix_sort(&mut keys, 63);
         assert_eq!(keys, expected);
     }
 

@@ -133,100 +133,122 @@ pub(crate) struct Candidate {
     pub(crate) thickness: f64,
 }
 
-/// Two bodies, or one and itself.
-pub(crate) struct Search<'a> {
-    pub(crate) a: Body<'a>,
-    pub(crate) b: Body<'a>,
+/// A body with the boxes of its features: each is asked for many times.
+struct Features<'a> {
+    body: Body<'a>,
+    vertices: Vec<Aabb>,
+    edges: Vec<Aabb>,
+    triangles: Vec<Aabb>,
 }
 
-impl Search<'_> {
-    /// What `test` says about all pairs within the one body whose boxes overlap, but for those with a
-    /// vertex in common, in ascending order of pairs.
-    pub(crate) fn within<T: Send + Copy>(
-        &self,
-        tree: &Bvh,
-        test: impl Fn(&Candidate) -> Option<T> + Sync,
-    ) -> Vec<(Pair, T)> {
-        let surface = self.a.surface;
-        let triangles = tree.self_pairs(|_, _| true);
-        let mut found = par::collect(triangles.len(), |i, found| {
-            let [a, b] = triangles[i];
-            for (own, other) in [(a, b), (b, a)] {
-                let corners = surface.triangles()[other as usize];
-                for v in surface.owned_vertices(own).filter(|v| !corners.contains(v)) {
-                    self.look_at(PairKind::VertexTriangle, v, other, &test, found);
-                }
-            }
-            for e in surface.owned_edges(a) {
-                let ends = surface.edges()[e as usize];
-                for f in surface.owned_edges(b) {
-                    if !surface.edges()[f as usize].iter().any(|v| ends.contains(v)) {
-                        self.look_at(PairKind::EdgeEdge, e.min(f), e.max(f), &test, found);
-                    }
-                }
-            }
-        });
-        found.sort_unstable_by_key(|(pair, _)| *pair);
-        found
+impl<'a> Features<'a> {
+    fn of(body: Body<'a>) -> Features<'a> {
+        let s = body.surface;
+        let mut all = Features {
+            body,
+            vertices: vec![Aabb::EMPTY; s.n_vertices()],
+            edges: vec![Aabb::EMPTY; s.n_edges()],
+            triangles: vec![Aabb::EMPTY; s.n_triangles()],
+        };
+        par::fill(&mut all.vertices, |v| body.box_around(&[v as u32]));
+        par::fill(&mut all.edges, |e| body.box_around(&s.edges()[e]));
+        par::fill(&mut all.triangles, |t| body.triangle_box(t as u32));
+        all
     }
 
-    /// What `test` says about all pairs between the two bodies whose boxes overlap, in ascending order
-    /// of pairs.
-    pub(crate) fn between<T: Send + Copy>(
-        &self,
-        tree_a: &Bvh,
-        tree_b: &Bvh,
-        test: impl Fn(&Candidate) -> Option<T> + Sync,
-    ) -> Vec<(Pair, T)> {
-        let triangles = tree_a.pairs_with(tree_b, |_, _| true);
-        let (first, second) = (self.a.surface, self.b.surface);
-        let mut found = par::collect(triangles.len(), |i, found| {
-            let [a, b] = triangles[i];
-            for v in first.owned_vertices(a) {
-                self.look_at(PairKind::VertexTriangle, v, b, &test, found);
-            }
-            for v in second.owned_vertices(b) {
-                self.look_at(PairKind::TriangleVertex, a, v, &test, found);
-            }
-            for e in first.owned_edges(a) {
-                for f in second.owned_edges(b) {
-                    self.look_at(PairKind::EdgeEdge, e, f, &test, found);
-                }
-            }
-        });
-        found.sort_unstable_by_key(|(pair, _)| *pair);
-        found
-    }
-
-    /// Tests one pair if its boxes overlap.
     #[inline]
-    fn look_at<T>(
-        &self,
-        kind: PairKind,
-        a: u32,
-        b: u32,
-        test: &impl Fn(&Candidate) -> Option<T>,
-        found: &mut Vec<(Pair, T)>,
-    ) {
-        let pair = Pair { kind, a, b };
-        let vertices = pair.vertices(self.a.surface, self.b.surface);
-        // The bodies of the first and of the rest as the tests take them.
-        let (one, other, n) = match kind {
-            PairKind::VertexTriangle => (&self.a, &self.b, 1),
-            PairKind::TriangleVertex => (&self.b, &self.a, 1),
-            PairKind::EdgeEdge => (&self.a, &self.b, 2),
-        };
-        let (front, rear) = vertices.split_at(n);
-        if !one.box_around(front).overlaps(&other.box_around(rear)) {
-            return;
-        }
-        let body = |i: usize| if i < n { one } else { other };
-        let candidate = Candidate {
-            pair,
-            x_t0: std::array::from_fn(|i| body(i).x_t0[vertices[i] as usize]),
-            x_t1: std::array::from_fn(|i| body(i).x_t1[vertices[i] as usize]),
-            thickness: one.radius_of(front) + other.radius_of(rear),
-        };
-        found.extend(test(&candidate).map(|answer| (pair, answer)));
+    fn vertices_near(&self, owner: u32, near: &Aabb) -> impl Iterator<Item = u32> {
+        let owned = self.body.surface.owned_vertices(owner);
+        owned.filter(move |&v| self.vertices[v as usize].overlaps(near))
     }
+
+    #[inline]
+    fn edges_near(&self, owner: u32, near: &Aabb) -> impl Iterator<Item = u32> {
+        let owned = self.body.surface.owned_edges(owner);
+        owned.filter(move |&e| self.edges[e as usize].overlaps(near))
+    }
+}
+
+/// What `test` says about all pairs within a body whose boxes overlap, but for those with a vertex in
+/// common, in ascending order of pairs.
+pub(crate) fn search_within<T: Send>(
+    body: Body<'_>,
+    tree: &Bvh,
+    test: impl Fn(&Candidate) -> Option<T> + Sync,
+) -> Vec<(Pair, T)> {
+    let own = Features::of(body);
+    let surface = body.surface;
+    let triangles = tree.self_pairs(|_, _| true);
+    let mut found = par::collect(triangles.len(), |i, found| {
+        let [a, b] = triangles[i];
+        for (owner, other) in [(a, b), (b, a)] {
+            let corners = surface.triangles()[other as usize];
+            for v in own.vertices_near(owner, &own.triangles[other as usize]) {
+                if !corners.contains(&v) {
+                    let pair = Pair { kind: PairKind::VertexTriangle, a: v, b: other };
+                    ask(pair, body, body, &test, found);
+                }
+            }
+        }
+        for e in own.edges_near(a, &own.triangles[b as usize]) {
+            let ends = surface.edges()[e as usize];
+            for f in own.edges_near(b, &own.edges[e as usize]) {
+                if !surface.edges()[f as usize].iter().any(|v| ends.contains(v)) {
+                    let pair = Pair { kind: PairKind::EdgeEdge, a: e.min(f), b: e.max(f) };
+                    ask(pair, body, body, &test, found);
+                }
+            }
+        }
+    });
+    found.sort_unstable_by_key(|(pair, _)| *pair);
+    found
+}
+
+/// What `test` says about all pairs between two bodies whose boxes overlap, in ascending order of
+/// pairs.
+pub(crate) fn search_between<T: Send>(
+    (a, tree_a): (Body<'_>, &Bvh),
+    (b, tree_b): (Body<'_>, &Bvh),
+    test: impl Fn(&Candidate) -> Option<T> + Sync,
+) -> Vec<(Pair, T)> {
+    let (first, second) = (Features::of(a), Features::of(b));
+    let triangles = tree_a.pairs_with(tree_b, |_, _| true);
+    let mut found = par::collect(triangles.len(), |i, found| {
+        let [s, t] = triangles[i];
+        for v in first.vertices_near(s, &second.triangles[t as usize]) {
+            ask(Pair { kind: PairKind::VertexTriangle, a: v, b: t }, a, b, &test, found);
+        }
+        for v in second.vertices_near(t, &first.triangles[s as usize]) {
+            ask(Pair { kind: PairKind::TriangleVertex, a: s, b: v }, a, b, &test, found);
+        }
+        for e in first.edges_near(s, &second.triangles[t as usize]) {
+            for f in second.edges_near(t, &first.edges[e as usize]) {
+                ask(Pair { kind: PairKind::EdgeEdge, a: e, b: f }, a, b, &test, found);
+            }
+        }
+    });
+    found.sort_unstable_by_key(|(pair, _)| *pair);
+    found
+}
+
+/// Tests one pair.
+#[inline]
+fn ask<T>(
+    pair: Pair,
+    a: Body<'_>,
+    b: Body<'_>,
+    test: &impl Fn(&Candidate) -> Option<T>,
+    found: &mut Vec<(Pair, T)>,
+) {
+    let (vertices, first) = (pair.vertices(a.surface, b.surface), pair.of_first());
+    let body = |i: usize| if first[i] { &a } else { &b };
+    let n = if pair.kind == PairKind::EdgeEdge { 2 } else { 1 };
+    let (front, rear) = vertices.split_at(n);
+    let candidate = Candidate {
+        pair,
+        x_t0: std::array::from_fn(|i| body(i).x_t0[vertices[i] as usize]),
+        x_t1: std::array::from_fn(|i| body(i).x_t1[vertices[i] as usize]),
+        thickness: body(0).radius_of(front) + body(3).radius_of(rear),
+    };
+    found.extend(test(&candidate).map(|answer| (pair, answer)));
 }

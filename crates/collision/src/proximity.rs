@@ -1,7 +1,7 @@
 //! Which features are within a thickness of each other, at one instant.
 
 use crate::distance::{self, EdgeEdgeFeature, VertexTriangleFeature};
-use crate::pairs::{Body, Candidate, Pair, PairKind, Search};
+use crate::pairs::{Body, Candidate, Pair, PairKind, search_between, search_within};
 use crate::{Bvh, Surface};
 use mesh_core::World3;
 
@@ -43,14 +43,14 @@ impl Proximity {
 /// ascending order. Features with a vertex in common are not in contact. The tree is the body's
 /// ([`Body::tree`]); of a moving body, the end of the motion counts.
 pub fn within(body: Body<'_>, tree: &Bvh) -> Vec<Proximity> {
-    let found = Search { a: body, b: body }.within(tree, measure);
+    let found = search_within(body, tree, measure);
     found.into_iter().map(|(_, proximity)| proximity).collect()
 }
 
 /// All pairs of a feature of `a` and a feature of `b` with a distance of at most the sum of their
 /// radii, each once, in ascending order. The trees are the bodies'.
-pub fn between((a, tree_a): (Body<'_>, &Bvh), (b, tree_b): (Body<'_>, &Bvh)) -> Vec<Proximity> {
-    let found = Search { a, b }.between(tree_a, tree_b, measure);
+pub fn between(a: (Body<'_>, &Bvh), b: (Body<'_>, &Bvh)) -> Vec<Proximity> {
+    let found = search_between(a, b, measure);
     found.into_iter().map(|(_, proximity)| proximity).collect()
 }
 

@@ -2,7 +2,7 @@
 
 use crate::Bvh;
 use crate::ccd;
-use crate::pairs::{Body, Candidate, Pair, PairKind, Search};
+use crate::pairs::{Body, Candidate, Pair, PairKind, search_between, search_within};
 
 /// Two features that come as close as the sum of their radii, or nearly.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,16 +16,13 @@ pub struct Impact {
 /// All pairs of features of a body whose swept boxes overlap, in ascending order; none with a vertex
 /// in common. The tree is the body's ([`Body::tree`]).
 pub fn candidates_within(body: Body<'_>, tree: &Bvh) -> Vec<Pair> {
-    let found = Search { a: body, b: body }.within(tree, |_| Some(()));
+    let found = search_within(body, tree, |_| Some(()));
     found.into_iter().map(|(pair, ())| pair).collect()
 }
 
 /// All pairs of a feature of `a` and a feature of `b` whose swept boxes overlap, in ascending order.
-pub fn candidates_between(
-    (a, tree_a): (Body<'_>, &Bvh),
-    (b, tree_b): (Body<'_>, &Bvh),
-) -> Vec<Pair> {
-    let found = Search { a, b }.between(tree_a, tree_b, |_| Some(()));
+pub fn candidates_between(a: (Body<'_>, &Bvh), b: (Body<'_>, &Bvh)) -> Vec<Pair> {
+    let found = search_between(a, b, |_| Some(()));
     found.into_iter().map(|(pair, ())| pair).collect()
 }
 
@@ -33,15 +30,12 @@ pub fn candidates_between(
 /// vertex that come as close as the sum of their radii. None is missed; the rules of
 /// [`ccd`](crate::ccd) hold.
 pub fn impacts_within(body: Body<'_>, tree: &Bvh) -> Vec<Impact> {
-    as_impacts(Search { a: body, b: body }.within(tree, collide))
+    as_impacts(search_within(body, tree, collide))
 }
 
 /// All impacts of a body with another one, in ascending order of pairs.
-pub fn impacts_between(
-    (a, tree_a): (Body<'_>, &Bvh),
-    (b, tree_b): (Body<'_>, &Bvh),
-) -> Vec<Impact> {
-    as_impacts(Search { a, b }.between(tree_a, tree_b, collide))
+pub fn impacts_between(a: (Body<'_>, &Bvh), b: (Body<'_>, &Bvh)) -> Vec<Impact> {
+    as_impacts(search_between(a, b, collide))
 }
 
 /// The time until which motion with these impacts is certainly free (1): the earliest, or 1.
