@@ -9,7 +9,7 @@ use crate::pairs::{Body, Candidate, Pair, PairKind, search_between, search_withi
 pub struct Impact {
     /// The features.
     pub pair: Pair,
-    /// Until when their motion is certainly free, as in [`Ccd`](crate::ccd::Ccd) (1).
+    /// Until when their motion is certainly free, as in [`Ccd`](ccd::Ccd) (1).
     pub t: f64,
 }
 
@@ -28,7 +28,7 @@ pub fn candidates_between(a: (Body<'_>, &Bvh), b: (Body<'_>, &Bvh)) -> Vec<Pair>
 
 /// All impacts of a body with itself, in ascending order of pairs: between features without a common
 /// vertex that come as close as the sum of their radii. None is missed; the rules of
-/// [`ccd`](crate::ccd) hold.
+/// [`ccd`] hold.
 pub fn impacts_within(body: Body<'_>, tree: &Bvh) -> Vec<Impact> {
     as_impacts(search_within(body, tree, collide))
 }

@@ -7,8 +7,8 @@
 //! its two ends, because each moves linearly. This is the inclusion function of Wang2021, but we
 //! compare it with the origin along any direction and not along the axes only: a direction n with
 //! `n · Dᵢ > separation · |n|` at both ends, for all i, *proves* that nothing touches in between, at
-//! any parameters. So only time is bisected: a search ([`hull`]) proposes a direction, a bound with
-//! all rounding errors ([`certificate`]) accepts it, and time goes forward as far as the direction
+//! any parameters. So only time is bisected: a search (`hull.rs`) proposes a direction, a bound with
+//! all rounding errors (`certificate.rs`) accepts it, and time goes forward as far as the direction
 //! holds. If none is found the interval is shortened, until a contact is reported at the time that
 //! is proven to be free.
 //!

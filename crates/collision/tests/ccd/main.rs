@@ -6,6 +6,7 @@ mod exact;
 mod random;
 
 use collision::ccd::{self, Ccd};
+use collision::distance;
 use exact::{Query, Truth};
 use mesh_core::World3;
 use random::Random;
@@ -144,4 +145,49 @@ fn numbers_at_the_ends_of_their_range_are_never_free_by_mistake() {
     assert!(ccd::vertex_triangle(&odd, &at(1.0, 1.0), 0.0).is_hit());
     assert!(ccd::edge_edge(&at(1.0, 1.0), &odd, 0.0).is_hit());
     assert!(ccd::vertex_triangle(&at(1.0, 1.0), &at(1.0, 1.0), f64::NAN).is_hit());
+}
+
+/// The distance at a time.
+fn distance_at(is_edges: bool, x_t0: &[World3; 4], x_t1: &[World3; 4], t: f64) -> f64 {
+    let x = std::array::from_fn(|i| x_t0[i] * (1.0 - t) + x_t1[i] * t);
+    if is_edges {
+        distance::edge_edge(&x).distance()
+    } else {
+        distance::vertex_triangle(&x).distance()
+    }
+}
+
+#[test]
+fn the_distance_stays_above_the_separation_as_long_as_it_is_said_to() {
+    let mut random = Random(3);
+    let (mut free, mut hits, mut from_start) = (0, 0, 0);
+    for _ in 0..20_000 {
+        let mut number = || random.within(1 << 40) as f64 / (1u64 << 40) as f64;
+        let mut points = || -> [World3; 4] {
+            std::array::from_fn(|_| World3::new(number(), number(), number()))
+        };
+        let (x_t0, x_t1) = (points(), points());
+        let separation = 0.2 * number().abs();
+        let is_edges = random.is_edges();
+        let test = if is_edges { ccd::edge_edge } else { ccd::vertex_triangle };
+        let found = test(&x_t0, &x_t1, separation);
+        let until = found.free_until();
+        let at = |t: f64| distance_at(is_edges, &x_t0, &x_t1, t);
+        if until == 0.0 {
+            from_start += 1;
+            assert!(at(0.0) < separation + 1e-4, "{}", at(0.0));
+            continue;
+        }
+        // Rounding of the sampled positions.
+        let least = (0..=64).map(|k| at(until * f64::from(k) / 64.0)).fold(f64::INFINITY, f64::min);
+        assert!(least > separation - 1e-14, "{least} {separation} {found:?}");
+        if found.is_hit() {
+            hits += 1;
+            // The proof ends where they are that close: nothing moves faster than 4 per unit of time.
+            assert!(at(until) < separation + 4e-5, "{} {separation}", at(until));
+        } else {
+            free += 1;
+        }
+    }
+    assert!(free > 5000 && hits > 1000 && from_start > 500, "{free} {hits} {from_start}");
 }
