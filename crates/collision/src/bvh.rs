@@ -107,17 +107,14 @@ impl Bvh {
         self.looseness() > WORN * self.fresh
     }
 
-    /// Calls `found` with every element whose box overlaps `with`, in the order of the tree.
+    /// Calls `found` with every element whose box overlaps `with`, in no order that a
+    /// caller should rely on.
     pub fn for_each_overlap(&self, with: &Aabb, mut found: impl FnMut(u32)) {
         if self.is_empty() {
             return;
         }
         self.traverse(with, 0, |group| {
-            for i in self.places(group) {
-                if self.boxes[i].overlaps(with) {
-                    found(self.order[i]);
-                }
-            }
+            for_each_hit(with, &self.boxes, self.places(group), |i| found(self.order[i]));
         });
     }
 
@@ -139,15 +136,14 @@ impl Bvh {
             self.traverse(&around, group, |other| {
                 for i in own.clone() {
                     let rest = self.places(other);
-                    for j in rest.start.max(i + 1)..rest.end {
-                        if self.boxes[i].overlaps(&self.boxes[j]) {
-                            let (a, b) = (self.order[i], self.order[j]);
-                            let (a, b) = (a.min(b), a.max(b));
-                            if keep(a, b) {
-                                pairs.push([a, b]);
-                            }
+                    let rest = rest.start.max(i + 1)..rest.end;
+                    for_each_hit(&self.boxes[i], &self.boxes, rest, |j| {
+                        let (a, b) = (self.order[i], self.order[j]);
+                        let (a, b) = (a.min(b), a.max(b));
+                        if keep(a, b) {
+                            pairs.push([a, b]);
                         }
-                    }
+                    });
                 }
             });
         });
@@ -166,14 +162,12 @@ impl Bvh {
             let around = self.around(group);
             other.traverse(&around, 0, |theirs| {
                 for i in own.clone() {
-                    for j in other.places(theirs) {
-                        if self.boxes[i].overlaps(&other.boxes[j]) {
-                            let (a, b) = (self.order[i], other.order[j]);
-                            if keep(a, b) {
-                                pairs.push([a, b]);
-                            }
+                    for_each_hit(&self.boxes[i], &other.boxes, other.places(theirs), |j| {
+                        let (a, b) = (self.order[i], other.order[j]);
+                        if keep(a, b) {
+                            pairs.push([a, b]);
                         }
-                    }
+                    });
                 }
             });
         });
@@ -209,17 +203,37 @@ impl Bvh {
             let start = self.levels[level];
             let end = (self.levels[level + 1] - start).min((node + 1) * WIDTH);
             let under = 1usize << (2 * (level - 1));
-            for child in (node * WIDTH..end).rev() {
-                if (child + 1) * under > first && self.boxes[start + child].overlaps(with) {
-                    if level == 1 {
-                        visit(child);
-                    } else {
-                        stack[height] = (level as u32, child as u32);
-                        height += 1;
-                    }
+            // Those that reach `first`.
+            let children = (node * WIDTH).max(first / under)..end;
+            for_each_hit(with, &self.boxes[start..], children, |child| {
+                if level == 1 {
+                    visit(child);
+                } else {
+                    stack[height] = (level as u32, child as u32);
+                    height += 1;
                 }
-            }
+            });
         }
+    }
+}
+
+/// Calls `visit` with every place in `range` whose box overlaps `with`. All are tested before any is
+/// visited, because a branch per box would go wrong half of the time.
+#[inline]
+fn for_each_hit(
+    with: &Aabb,
+    boxes: &[Aabb],
+    range: std::ops::Range<usize>,
+    mut visit: impl FnMut(usize),
+) {
+    let start = range.start;
+    let mut hits = 0u32;
+    for (k, b) in boxes[range].iter().enumerate() {
+        hits |= u32::from(b.overlaps(with)) << k;
+    }
+    while hits != 0 {
+        visit(start + hits.trailing_zeros() as usize);
+        hits &= hits - 1;
     }
 }
 
