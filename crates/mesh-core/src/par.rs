@@ -35,6 +35,26 @@ pub fn for_each<T: Send>(out: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
     }
 }
 
+/// The lists that `f(i, &mut list)` adds to, one after the other in the order of `0..n`: the same
+/// list at any number of threads.
+pub fn collect<T: Send>(n: usize, f: impl Fn(usize, &mut Vec<T>) + Sync) -> Vec<T> {
+    const BLOCK: usize = 64;
+    let block = |b: usize, list: &mut Vec<T>| {
+        (b * BLOCK..((b + 1) * BLOCK).min(n)).for_each(|i| f(i, list));
+    };
+    let mut all = Vec::new();
+    if worth_it(n) {
+        let mut lists: Vec<Vec<T>> = Vec::new();
+        lists.resize_with(n.div_ceil(BLOCK), Vec::new);
+        lists.par_iter_mut().enumerate().for_each(|(b, list)| block(b, list));
+        all.reserve_exact(lists.iter().map(Vec::len).sum());
+        lists.iter_mut().for_each(|list| all.append(list));
+    } else {
+        (0..n.div_ceil(BLOCK)).for_each(|b| block(b, &mut all));
+    }
+    all
+}
+
 /// Sum of `f(i)` over `0..n`, in blocks of fixed size added in order: the same bits at any number
 /// of threads.
 pub fn sum(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {

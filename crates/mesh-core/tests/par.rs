@@ -45,3 +45,16 @@ fn every_item_is_visited_once() {
         .unwrap();
     }
 }
+
+#[test]
+fn lists_are_joined_in_order() {
+    // Item i adds i mod 4 numbers.
+    let add = |i: usize, list: &mut Vec<(usize, usize)>| list.extend((0..i % 4).map(|k| (i, k)));
+    for n in SIZES {
+        let mut expected = Vec::new();
+        (0..n).for_each(|i| add(i, &mut expected));
+        for threads in [1, 2, 4] {
+            assert_eq!(par::with_threads(threads, || par::collect(n, add)).unwrap(), expected);
+        }
+    }
+}
