@@ -45,7 +45,7 @@ fn tip_of_the_master_curve_within_three_per_cent() {
     let mut solver = SparseCholesky::new(LinearSettings::default());
     for round in 0..6 {
         let mut system =
-            System::new(&cloth, &Arc::new(vec![fabric.clone()]), &environment).unwrap();
+            System::new(&cloth, &Arc::new(vec![fabric.clone()]), &environment, 1.0).unwrap();
         // Whatever the remesher put between the clamped vertices is clamped as well.
         let in_clamp: Vec<u32> = (0..cloth.mesh.n_triangles())
             .flat_map(|t| {

@@ -45,13 +45,7 @@ impl Force for Gravity {
         }
     }
 
-    fn add_system(
-        &self,
-        x: &[World3],
-        _: Stiffness,
-        gradient: &mut [World3],
-        _: &mut BlockMatrix,
-    ) {
+    fn add_system(&self, x: &[World3], _: Stiffness, gradient: &mut [World3], _: &mut BlockMatrix) {
         self.add_gradient(x, gradient);
     }
 }

@@ -152,7 +152,8 @@ impl StrainProjection {
         let m = corners.map(mass);
         let is_held = m.map(f64::is_infinite);
         // What is held stays, and the others take their places about it.
-        let weights = if is_held.contains(&true) { is_held.map(|h| f64::from(u8::from(h))) } else { m };
+        let weights =
+            if is_held.contains(&true) { is_held.map(|h| f64::from(u8::from(h))) } else { m };
         let centre = |p: &[World3; 3]| -> World3 {
             (0..3).map(|k| p[k] * weights[k]).sum::<World3>() / weights.iter().sum::<f64>()
         };

@@ -171,6 +171,7 @@ fn energy_does_not_rise() {
                     &run.cloth,
                     &std::sync::Arc::new(vec![fabric(stiffness, 1e-4, 0.2)]),
                     &NOTHING,
+                    h,
                 )
                 .unwrap();
                 run.settings.tolerance = 1e-6;

@@ -180,7 +180,11 @@ impl Driver<'_> {
         let x = [h, g, h.prev(), g.prev()].map(|e| self.cloth.x[mesh.origin(e).index()]);
         let pick = |places: [usize; 3]| (places.map(|i| u[i]), places.map(|i| x[i]));
         let panel = mesh.panels()[h.triangle().index()];
-        self.keeps_strain(panel, [pick([0, 1, 2]), pick([1, 0, 3])], [pick([3, 1, 2]), pick([2, 0, 3])])
+        self.keeps_strain(
+            panel,
+            [pick([0, 1, 2]), pick([1, 0, 3])],
+            [pick([3, 1, 2]), pick([2, 0, 3])],
+        )
     }
 
     /// True if the two new faces would lie across each other in world space.

@@ -243,7 +243,8 @@ impl Driver<'_> {
             let (dot, squares) = (old.dot(&new), old.norm_squared() * new.norm_squared());
             let is_even = dot > 0.0 && dot * dot > SHARPEST_TURN * SHARPEST_TURN * squares;
             let panel = mesh.panels()[e.triangle().index()];
-            let (before, after) = (([v, p, q], [x_v, x_p, x_q]), ([kept, p, q], [x_kept, x_p, x_q]));
+            let (before, after) =
+                (([v, p, q], [x_v, x_p, x_q]), ([kept, p, q], [x_kept, x_p, x_q]));
             (is_even || old.norm_squared() == 0.0) && self.keeps_strain(panel, [before], [after])
         })
     }

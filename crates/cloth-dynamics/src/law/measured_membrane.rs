@@ -132,8 +132,7 @@ impl MeasuredMembrane {
         }
         let (rd, rs) = (d / r, s / r);
         // From (p, d, s) to (a₁₁, a₂₂, 2a₁₂).
-        let gradient =
-            |p: f64, d: f64, s: f64| Vector3::new(0.5 * (p + d), 0.5 * (p - d), 0.5 * s);
+        let gradient = |p: f64, d: f64, s: f64| Vector3::new(0.5 * (p + d), 0.5 * (p - d), 0.5 * s);
         let grad_c = gradient(0.0, (1.0 - rd * rd) / r, -rd * rs / r);
         let blend = Self::blend(rd);
         let s_0 = self.rows[0] * a;
@@ -186,9 +185,8 @@ impl Law for MeasuredMembrane {
         };
         let FirstOrder { r, rd, rs, ramp: [ramp, d_ramp, dd_ramp], .. } = first;
         let FirstOrder { grad_e, grad_c, grad_excess, excess, q_12, s_12, .. } = first;
-        let hessian = |dd: f64, ds: f64, ss: f64| {
-            Matrix3::new(dd, -dd, ds, -dd, dd, -ds, ds, -ds, ss) * 0.25
-        };
+        let hessian =
+            |dd: f64, ds: f64, ss: f64| Matrix3::new(dd, -dd, ds, -dd, dd, -ds, ds, -ds, ss) * 0.25;
         let hess_e = hessian((1.0 - rd * rd) / r, -rd * rs / r, (1.0 - rs * rs) / r);
         let hess_c = hessian(
             -3.0 * rd * (1.0 - rd * rd) / (r * r),

@@ -49,7 +49,7 @@ pub struct Run {
 
 impl Run {
     pub fn new(cloth: ClothState, fabric: Fabric, environment: &Environment) -> Run {
-        let system = System::new(&cloth, &Arc::new(vec![fabric]), environment).unwrap();
+        let system = System::new(&cloth, &Arc::new(vec![fabric]), environment, 1.0).unwrap();
         let solver = SparseCholesky::new(LinearSettings::default());
         let settings = NewtonSettings { max_iterations: 100, tolerance: 1e-9 };
         Run { cloth, system, solver, settings, time: 0.0 }
