@@ -44,6 +44,9 @@ const STIFFNESS: f64 = 20.0;
 /// Share of the lowest height of the triangles around a vertex that its radius may have: parts of
 /// flat cloth are then not in contact with each other.
 const RADIUS_OF_HEIGHT: f64 = 0.2;
+/// Share of the thickness that is far more than the rounding of a distance: what keeps it needs no
+/// continuous test.
+const CLEAR: f64 = 0.1;
 /// Speed below which things stick (m/s).
 const STICK: f64 = 1e-3;
 
@@ -250,23 +253,43 @@ impl Contact for SurfaceContact {
             self.near[1] =
                 swept::candidates_between((body, &self.cloth_tree), (other, &moving.tree));
         }
+        // How near the things of a pair may come: nearer than now by no more than they move.
         let pairs: Vec<(usize, Pair)> = self.pairs().collect();
-        let mut free = vec![1.0; pairs.len()];
         let (now, then): (&[World3], &[World3]) =
             self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then));
+        let mut free = vec![None; pairs.len()];
         par::fill(&mut free, |k| {
             let (set, pair) = pairs[k];
             let sides = self.sides(set, pair);
             let x_t0 = self.corners_at(&sides, x, now);
             let x_t1 = self.corners_at(&sides, &x_t1, then);
-            match pair.kind {
-                PairKind::EdgeEdge => ccd::edge_edge(&x_t0, &x_t1, 0.0).free_until(),
-                _ => ccd::vertex_triangle(&x_t0, &x_t1, 0.0).free_until(),
+            let moved = |k: usize| (x_t1[k] - x_t0[k]).norm();
+            let most =
+                |side| (0..4).filter(|&k| sides.is_first[k] == side).map(moved).fold(0.0, f64::max);
+            let left = sides.closest(&x_t0).distance - most(true) - most(false);
+            let thickness = self.thickness(&sides);
+            if left > thickness {
+                None
+            } else if left > CLEAR * thickness {
+                Some(1.0)
+            } else if pair.kind == PairKind::EdgeEdge {
+                Some(ccd::edge_edge(&x_t0, &x_t1, 0.0).free_until())
+            } else {
+                Some(ccd::vertex_triangle(&x_t0, &x_t1, 0.0).free_until())
             }
         });
-        let hits = pairs.iter().zip(&free).filter(|((set, _), free)| *set == 1 && **free < 1.0);
+        let near = |which: usize| {
+            let found = pairs.iter().zip(&free);
+            let kept = found.filter(|((set, _), free)| *set == which && free.is_some());
+            kept.map(|((_, pair), _)| *pair).collect()
+        };
+        self.near = [near(0), near(1)];
+        let hits = pairs
+            .iter()
+            .zip(&free)
+            .filter(|((set, _), free)| *set == 1 && free.is_some_and(|t| t < 1.0));
         self.in_the_way = hits.map(|((_, pair), _)| *pair).collect();
-        free.into_iter().fold(1.0, f64::min)
+        free.into_iter().flatten().fold(1.0, f64::min)
     }
 
     fn carry(&self, x: &[World3], step: &mut [World3]) -> bool {
