@@ -49,6 +49,7 @@
 #![forbid(unsafe_code)]
 
 mod bending;
+pub mod contact;
 mod dihedral;
 mod element;
 mod fabric;

@@ -92,6 +92,14 @@ pub enum SolveError {
         /// Step of the stage (s).
         h: f64,
     },
+    /// Cloth is in the way of an obstacle or of a handle, and could not be moved out of it.
+    #[error("at time {time} s: the cloth is caught, with {left} of the way of obstacles left")]
+    Caught {
+        /// Time at the end of the stage (s).
+        time: f64,
+        /// Share of the way that obstacles have not gone (1).
+        left: f64,
+    },
     /// The linear solver failed.
     #[error("at time {time} s: {source}")]
     Linear {
@@ -114,12 +122,15 @@ pub(crate) struct Inertia<'a> {
     pub time: f64,
     /// Vertices that do not move from where the start has them.
     pub fixed: &'a [bool],
+    /// Positions at the start of the stage (m).
+    pub x_t0: &'a [World3],
 }
 
 impl Inertia<'_> {
     fn potential(&self, system: &System, x: &[World3]) -> f64 {
         let kinetic = par::sum(x.len(), |i| self.mass[i] * (x[i] - self.target[i]).norm_squared());
-        kinetic / (2.0 * self.h * self.h) + system.energy(x)
+        let contact = system.contact.as_ref().map_or(0.0, |contact| contact.energy(x));
+        kinetic / (2.0 * self.h * self.h) + system.energy(x) + contact
     }
 }
 
@@ -139,6 +150,13 @@ const REST_STARTS: u32 = 7;
 /// Iterations are allowed up to this multiple of the limit while triangles are out of their strain
 /// limits.
 const LIMIT_PATIENCE: usize = 3;
+
+/// The same, while obstacles have not arrived where they are to be.
+const ARRIVAL_PATIENCE: usize = 6;
+/// How often what is in the way of obstacles is looked for, to go along with them.
+const MAX_CARRIES: usize = 8;
+/// Share of a free way that is gone: the rest keeps gaps open.
+const CAUTION: f64 = 0.9;
 
 /// The lowest point so far, kept while steps that raise the potential are on trial.
 #[derive(Default)]
@@ -169,6 +187,10 @@ struct Newton<'a> {
     converged: bool,
     /// No descent is left within rounding.
     stuck: bool,
+    /// Share of their way that obstacles and handles have yet to go (1).
+    left: f64,
+    /// Where the fixed vertices are to be (m).
+    held: &'a [World3],
 }
 
 /// Minimises the incremental potential from the better of two starts: at rest where the step begins,
@@ -187,7 +209,15 @@ pub(crate) fn minimise(
     settings: &NewtonSettings,
 ) -> Result<(Vec<World3>, SolveReport), SolveError> {
     let clock = Instant::now();
-    let (x, phi) = choose_start(system, inertia, starts)?;
+    let (x, phi) = match system.contact {
+        None => choose_start(system, inertia, starts)?,
+        Some(_) => start_in_contact(system, inertia)?,
+    };
+    // Handles and obstacles go to their places in the first steps.
+    let is_in_place = system.contact.as_ref().is_none_or(|contact| {
+        let in_place = |(i, x): (usize, &World3)| !inertia.fixed[i] || *x == starts[0][i];
+        contact.has_arrived() && x.iter().enumerate().all(in_place)
+    });
     let energy_s = clock.elapsed().as_secs_f64();
     let report = SolveReport { stages: 1, residual: f64::INFINITY, energy_s, ..Default::default() };
     let mut newton = Newton {
@@ -197,6 +227,8 @@ pub(crate) fn minimise(
         exact_failed: false,
         converged: false,
         stuck: false,
+        left: if is_in_place { 0.0 } else { 1.0 },
+        held: &starts[0],
         system,
         solver,
         inertia,
@@ -209,6 +241,14 @@ pub(crate) fn minimise(
     loop {
         while newton.report.iterations < budget && !newton.converged && !newton.stuck {
             newton.iterate(newton.report.iterations + 1 == budget)?;
+        }
+        if newton.left > 0.0 {
+            if newton.report.iterations >= ARRIVAL_PATIENCE * settings.max_iterations {
+                return Err(SolveError::Caught { time: inertia.time, left: newton.left });
+            }
+            budget = newton.report.iterations + 1;
+            newton.stuck = false;
+            continue;
         }
         let in_bounds = newton.respect_limits();
         let patience = newton.report.iterations < LIMIT_PATIENCE * settings.max_iterations;
@@ -240,6 +280,23 @@ fn choose_start(
     } else if phi.is_finite() {
         system.rests = REST_STARTS;
         Ok((resting.clone(), phi))
+    } else {
+        Err(SolveError::NotFinite { time: inertia.time, h: inertia.h })
+    }
+}
+
+/// The start of a stage with contact: where the cloth is, handles and obstacles included.
+fn start_in_contact(
+    system: &mut System,
+    inertia: &Inertia<'_>,
+) -> Result<(Vec<World3>, f64), SolveError> {
+    let x = inertia.x_t0.to_vec();
+    if let Some(contact) = &mut system.contact {
+        contact.look_ahead(&x, &vec![World3::zeros(); x.len()]);
+    }
+    let phi = inertia.potential(system, &x);
+    if phi.is_finite() {
+        Ok((x, phi))
     } else {
         Err(SolveError::NotFinite { time: inertia.time, h: inertia.h })
     }
@@ -292,7 +349,32 @@ impl Newton<'_> {
     }
 
     /// Makes the step; false if not in full.
-    fn advance(&mut self, direction: Vec<World3>, slope: f64, is_last: bool) -> bool {
+    fn advance(&mut self, mut direction: Vec<World3>, mut slope: f64, is_last: bool) -> bool {
+        let mut is_whole = true;
+        if let Some(contact) = &mut self.system.contact {
+            if self.left > 0.0 {
+                let (x, held, fixed) = (&self.x, self.held, self.inertia.fixed);
+                for i in (0..x.len()).filter(|&i| fixed[i]) {
+                    direction[i] = held[i] - x[i];
+                }
+            }
+            let mut free = contact.look_ahead(&self.x, &direction);
+            for _ in 0..MAX_CARRIES {
+                if self.left == 0.0 || free == 1.0 || !contact.carry(&self.x, &mut direction) {
+                    break;
+                }
+                free = contact.look_ahead(&self.x, &direction);
+            }
+            if free < 1.0 {
+                let share = CAUTION * free;
+                par::for_each(&mut direction, |_, d| *d *= share);
+                slope *= share;
+                is_whole = false;
+            }
+            if self.left > 0.0 {
+                return self.accompany(direction, if is_whole { 1.0 } else { CAUTION * free });
+            }
+        }
         let x = &self.x;
         self.system.predict(x, &direction);
         par::fill(&mut self.trial, |i| x[i] + direction[i]);
@@ -313,7 +395,30 @@ impl Newton<'_> {
             return false;
         }
         std::mem::swap(&mut self.x, &mut self.trial);
-        true
+        is_whole
+    }
+
+    /// Makes a step while obstacles or handles move: it cannot be judged by a potential that changes
+    /// with them.
+    fn accompany(&mut self, direction: Vec<World3>, share: f64) -> bool {
+        self.system.predict(&self.x, &direction);
+        par::for_each(&mut self.x, |i, x| *x += direction[i]);
+        if let Some(contact) = &mut self.system.contact {
+            contact.follow(share);
+        }
+        self.left *= 1.0 - share;
+        if self.left == 0.0 {
+            let (held, fixed) = (self.held, self.inertia.fixed);
+            // Exactly, not to rounding.
+            par::for_each(&mut self.x, |i, x| {
+                if fixed[i] {
+                    *x = held[i];
+                }
+            });
+        }
+        self.phi = self.inertia.potential(self.system, &self.x);
+        self.lowest.age = 0;
+        false
     }
 
     /// Returns to the lowest point and follows its direction by halves until the potential has fallen
@@ -322,6 +427,10 @@ impl Newton<'_> {
         let lowest = &mut self.lowest;
         let mut share = 1.0;
         lowest.age = 0;
+        if let Some(contact) = &mut self.system.contact {
+            // Its way was free when it was taken, and obstacles have not moved since.
+            contact.look_ahead(&lowest.x, &lowest.direction);
+        }
         for _ in 0..MAX_HALVINGS {
             share *= 0.5;
             par::for_each(&mut lowest.direction, |_, d| *d *= 0.5);
@@ -342,13 +451,14 @@ impl Newton<'_> {
     /// Brings triangles back that are out of their strain limits, where that lowers the potential;
     /// false if some are left.
     fn respect_limits(&mut self) -> bool {
-        let Some(limits) = &mut self.system.limits else { return true };
+        let Some(mut limits) = self.system.limits.take() else { return true };
         let clock = Instant::now();
         let Inertia { mass, fixed, .. } = *self.inertia;
         let mass = |i: u32| if fixed[i as usize] { f64::INFINITY } else { mass[i as usize] };
         self.trial.copy_from_slice(&self.x);
         let in_bounds = match limits.project(&mut self.trial, &mass) {
             None => true,
+            Some(_) if !self.trial_is_free() => false,
             Some(all) => {
                 let phi = self.inertia.potential(self.system, &self.trial);
                 let is_lower = phi <= self.phi + noise(self.phi);
@@ -359,8 +469,17 @@ impl Newton<'_> {
                 is_lower && all
             }
         };
+        self.system.limits = Some(limits);
         self.report.energy_s += clock.elapsed().as_secs_f64();
         in_bounds
+    }
+
+    /// Whether the way to the trial touches nothing.
+    fn trial_is_free(&mut self) -> bool {
+        let Some(contact) = &mut self.system.contact else { return true };
+        let step: Vec<World3> =
+            self.trial.iter().zip(&self.x).map(|(to, from)| to - from).collect();
+        contact.look_ahead(&self.x, &step) == 1.0
     }
 }
 

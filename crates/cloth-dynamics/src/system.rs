@@ -1,6 +1,7 @@
 //! All forces of a cloth and the system matrix they share: what exists is what the scene needs.
 
 use crate::bending::ShapeOperatorForce;
+use crate::contact::Contact;
 use crate::element::{Elements, Stiffness};
 use crate::fabric::Fabric;
 use crate::force::{Force, Stage};
@@ -39,6 +40,8 @@ pub struct System {
     forces: Vec<Box<dyn Force>>,
     pub(crate) springs: Springs,
     pub(crate) matrix: BlockMatrix,
+    /// What keeps the cloth from passing through things, if anything does.
+    pub(crate) contact: Option<Box<dyn Contact>>,
     /// Stages to come that need not look for a better start than rest.
     pub(crate) rests: u32,
     /// Brings back what a step leaves out of its strain limits, if there are any.
@@ -98,12 +101,23 @@ impl System {
         for force in &mut forces {
             force.bind(matrix.pattern());
         }
-        Ok(System { forces, springs: Springs::default(), matrix, rests: 0, limits })
+        Ok(System { forces, springs: Springs::default(), matrix, rests: 0, limits, contact: None })
     }
 
-    /// Names of the forces that exist.
+    /// Gives the cloth contact. Steps then start where nothing touches and keep it so.
+    pub fn set_contact(&mut self, contact: Box<dyn Contact>) {
+        self.contact = Some(contact);
+    }
+
+    /// Takes the contact back, with what it remembers.
+    pub fn take_contact(&mut self) -> Option<Box<dyn Contact>> {
+        self.contact.take()
+    }
+
+    /// Names of the forces that exist, contact among them.
     pub fn force_names(&self) -> Vec<&'static str> {
-        self.forces.iter().map(|f| f.name()).collect()
+        let forces = self.forces.iter().map(|f| f.name());
+        forces.chain(self.contact.iter().map(|c| c.name())).collect()
     }
 
     /// Potential energy of all forces at `x` (J): the fabric's, gravity's and the springs', and
@@ -143,6 +157,9 @@ impl System {
             force.add_system(x, kind, gradient, &mut self.matrix);
         }
         self.springs.add_system(x, kind, gradient, &mut self.matrix);
+        if let Some(contact) = &self.contact {
+            contact.add_system(x, gradient, &mut self.matrix);
+        }
     }
 }
 

@@ -75,6 +75,7 @@
 pub mod arcsim;
 pub mod build;
 pub mod checkpoint;
+pub mod contact;
 pub mod export;
 pub mod fabric;
 pub mod handles;

@@ -20,12 +20,13 @@ impl TimeIntegrator for ImplicitEuler {
         settings: &NewtonSettings,
         Step { time, h }: Step,
     ) -> Result<SolveReport, SolveError> {
-        let time = time + h;
+        let (time_t0, time) = (time, time + h);
         let start = StageStart {
             x_t0: &cloth.x,
             base: &cloth.x,
             velocity: &cloth.v,
             h,
+            time_t0,
             time,
             constraints: constraints(time),
         };

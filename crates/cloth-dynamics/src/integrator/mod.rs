@@ -47,6 +47,9 @@ struct StageStart<'a> {
     /// Velocity (m/s) that the stage would have without forces.
     velocity: &'a [World3],
     h: f64,
+    /// When the cloth is at `x_t0` (s).
+    time_t0: f64,
+    /// End of the stage (s).
     time: f64,
     constraints: Constraints,
 }
@@ -59,7 +62,7 @@ fn solve_stage(
     settings: &NewtonSettings,
     start: StageStart<'_>,
 ) -> Result<(Vec<World3>, SolveReport), SolveError> {
-    let StageStart { x_t0, base, velocity, h, time, constraints } = start;
+    let StageStart { x_t0, base, velocity, h, time_t0, time, constraints } = start;
     system.begin(Stage { x_t0, base, h });
     system.springs.springs = constraints.springs;
     let mut target: Vec<World3> = base.iter().zip(velocity).map(|(x, v)| x + v * h).collect();
@@ -72,6 +75,9 @@ fn solve_stage(
         resting[i] = x;
     }
     let starts = [resting, target.clone()];
-    let inertia = Inertia { mass: &cloth.m, target: &target, h, time, fixed: &fixed };
+    if let Some(contact) = &mut system.contact {
+        contact.begin(Stage { x_t0, base, h }, [time_t0, time], &cloth.m);
+    }
+    let inertia = Inertia { mass: &cloth.m, target: &target, h, time, fixed: &fixed, x_t0 };
     minimise(system, solver, &inertia, &starts, settings)
 }

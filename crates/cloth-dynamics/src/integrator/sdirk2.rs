@@ -39,6 +39,7 @@ impl TimeIntegrator for Sdirk2 {
             base: &cloth.x,
             velocity: &cloth.v,
             h: h_stage,
+            time_t0: time,
             time: time + h_stage,
             constraints: constraints(time + h_stage),
         };
@@ -62,6 +63,7 @@ impl TimeIntegrator for Sdirk2 {
             base: &base,
             velocity: &free,
             h: h_stage,
+            time_t0: time + h_stage,
             time: time + h,
             constraints: held,
         };

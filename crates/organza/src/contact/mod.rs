@@ -1,0 +1,350 @@
+//! Contact of the cloth with itself and with obstacles: what `collision` finds, as the potential and
+//! the bound on steps that the solver wants.
+
+mod pair;
+mod slip;
+
+use cloth_dynamics::Stage;
+use cloth_dynamics::contact::Contact;
+use cloth_dynamics::solver::BlockMatrix;
+use collision::{Body, Bvh, Pair, PairKind, Surface, SurfaceError, ccd, proximity, swept};
+use mesh_core::{ClothState, World3, par};
+use pair::Sides;
+use slip::Slip;
+use std::sync::Arc;
+
+/// Where the vertices of all obstacles are at a time (s).
+pub type Motion = Arc<dyn Fn(f64) -> Vec<World3> + Send + Sync>;
+
+/// How cloth touches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactSettings {
+    /// Distance below which things repel each other (m).
+    pub thickness: f64,
+    /// Friction coefficient of cloth on cloth (1).
+    pub friction: f64,
+    /// Whether cloth touches cloth.
+    pub self_contact: bool,
+}
+
+/// All obstacles of a scene as one surface.
+#[derive(Clone)]
+pub struct Obstacles {
+    /// Their triangles.
+    pub surface: Surface,
+    /// Where their vertices are.
+    pub motion: Motion,
+    /// Friction coefficient of every triangle's obstacle on cloth, by vertex (1).
+    pub friction: Vec<f64>,
+}
+
+/// Stiffness of a contact in units of mass over h²: what stops a vertex that moves at some d̂/h within
+/// the distance d̂.
+const STIFFNESS: f64 = 20.0;
+/// Share of the lowest height of the triangles around a vertex that its radius may have: parts of
+/// flat cloth are then not in contact with each other.
+const RADIUS_OF_HEIGHT: f64 = 0.2;
+/// Speed below which things stick (m/s).
+const STICK: f64 = 1e-3;
+
+/// Contact of a cloth on its current mesh.
+pub struct SurfaceContact {
+    settings: ContactSettings,
+    cloth: Surface,
+    /// Half the thickness around each vertex of the cloth (m).
+    radius: Vec<f64>,
+    cloth_tree: Bvh,
+    obstacles: Option<Moving>,
+    /// Pairs on the way that was last looked at: within the cloth, then with obstacles.
+    near: [Vec<Pair>; 2],
+    /// Those with obstacles that do touch on it.
+    in_the_way: Vec<Pair>,
+    slips: Vec<Slip>,
+    /// Mass over h² by vertex (N/m).
+    inertia: Vec<f64>,
+}
+
+/// The obstacles on their way.
+struct Moving {
+    fixed: Obstacles,
+    tree: Bvh,
+    /// Where they are, and where they are to be at the end of the stage (m).
+    now: Vec<World3>,
+    then: Vec<World3>,
+}
+
+impl SurfaceContact {
+    /// Contact of a cloth with itself, if the settings say so, and with obstacles.
+    ///
+    /// # Errors
+    /// If there are too many triangles.
+    pub fn new(
+        cloth: &ClothState,
+        obstacles: Option<&Obstacles>,
+        settings: ContactSettings,
+    ) -> Result<SurfaceContact, SurfaceError> {
+        let surface = Surface::new(cloth.mesh.n_vertices(), cloth.mesh.triangles())?;
+        let radius = radii(cloth, 0.5 * settings.thickness);
+        let cloth_tree = Body::still(&surface, &cloth.x, &|v| radius[v as usize]).tree();
+        let obstacles = obstacles.map(|fixed| {
+            let now = (fixed.motion)(0.0);
+            let half = 0.5 * settings.thickness;
+            let tree = Body::still(&fixed.surface, &now, &|_| half).tree();
+            Moving { fixed: fixed.clone(), tree, then: now.clone(), now }
+        });
+        Ok(SurfaceContact {
+            settings,
+            cloth: surface,
+            radius,
+            cloth_tree,
+            obstacles,
+            near: [Vec::new(), Vec::new()],
+            in_the_way: Vec::new(),
+            slips: Vec::new(),
+            inertia: Vec::new(),
+        })
+    }
+
+    /// Where things of a pair are: `set` is 0 within the cloth and 1 with obstacles.
+    fn sides(&self, set: usize, pair: Pair) -> Sides {
+        let other = match &self.obstacles {
+            Some(moving) if set == 1 => &moving.fixed.surface,
+            _ => &self.cloth,
+        };
+        Sides::new(pair, pair.vertices(&self.cloth, other), set == 0)
+    }
+
+    fn corners(&self, sides: &Sides, x: &[World3]) -> [World3; 4] {
+        self.corners_at(sides, x, self.obstacles.as_ref().map_or(&[], |moving| &moving.now))
+    }
+
+    fn corners_at(&self, sides: &Sides, x: &[World3], obstacles: &[World3]) -> [World3; 4] {
+        std::array::from_fn(|k| {
+            let i = sides.vertices[k] as usize;
+            if sides.is_cloth[k] { x[i] } else { obstacles[i] }
+        })
+    }
+
+    /// Distance below which the things of a pair repel each other (m).
+    fn thickness(&self, sides: &Sides) -> f64 {
+        let radius = |k: usize| {
+            if sides.is_cloth[k] {
+                self.radius[sides.vertices[k] as usize]
+            } else {
+                0.5 * self.settings.thickness
+            }
+        };
+        let largest = |side: bool| {
+            (0..4).filter(|&k| sides.is_first[k] == side).map(radius).fold(0.0, f64::max)
+        };
+        largest(true) + largest(false)
+    }
+
+    /// Stiffness of a pair (N/m).
+    fn stiffness(&self, sides: &Sides) -> f64 {
+        let cloth = (0..4).filter(|&k| sides.is_cloth[k]);
+        let of = |k: usize| self.inertia[sides.vertices[k] as usize];
+        STIFFNESS * cloth.clone().map(of).sum::<f64>() / cloth.count() as f64
+    }
+
+    /// All pairs of both sets.
+    fn pairs(&self) -> impl Iterator<Item = (usize, Pair)> {
+        let sets = self.near.iter().enumerate();
+        sets.flat_map(|(set, pairs)| pairs.iter().map(move |pair| (set, *pair)))
+    }
+
+    /// What holds things back that touch at the start of a stage.
+    fn find_slips(&mut self, x: &[World3], times: [f64; 2], h: f64) {
+        self.slips.clear();
+        let radius = |v: u32| self.radius[v as usize];
+        let body = Body::still(&self.cloth, x, &radius);
+        let mut found = Vec::new();
+        if self.settings.self_contact && self.settings.friction > 0.0 {
+            body.update_tree(&mut self.cloth_tree);
+            let touching = proximity::within(body, &self.cloth_tree);
+            found.extend(
+                touching.into_iter().map(|p| (0, p, self.settings.friction, World3::zeros())),
+            );
+        }
+        if let Some(moving) = &mut self.obstacles
+            && moving.fixed.friction.iter().any(|&mu| mu > 0.0)
+        {
+            body.update_tree(&mut self.cloth_tree);
+            let half = 0.5 * self.settings.thickness;
+            let room = |_: u32| half;
+            let other = Body::still(&moving.fixed.surface, &moving.now, &room);
+            other.update_tree(&mut moving.tree);
+            let before = (moving.fixed.motion)(times[1] - h);
+            for p in proximity::between((body, &self.cloth_tree), (other, &moving.tree)) {
+                let vertices = p.vertices(&self.cloth, &moving.fixed.surface);
+                let is_first = p.pair.of_first();
+                let theirs = (0..4).filter(|&k| !is_first[k]);
+                let (mut mu, mut way) = (0.0, World3::zeros());
+                for k in theirs {
+                    let i = vertices[k] as usize;
+                    mu = f64::max(mu, moving.fixed.friction[i]);
+                    way += (moving.then[i] - before[i]) * p.weights[k];
+                }
+                found.push((1, p, mu, way));
+            }
+        }
+        for (set, p, mu, way) in found {
+            let sides = self.sides(set, p.pair);
+            let [_, slope, _] = cloth_dynamics::contact::barrier(p.distance, p.thickness);
+            let force = -slope * self.stiffness(&sides);
+            self.slips.extend(Slip::new(sides, &p, mu * force, way, STICK * h));
+        }
+    }
+}
+
+/// Radii of the vertices: `most`, but less where the mesh is fine (m).
+fn radii(cloth: &ClothState, most: f64) -> Vec<f64> {
+    let mesh = &cloth.mesh;
+    let lowest = |t: mesh_core::TriangleId| {
+        let edges = [0, 1, 2].map(|k| mesh.material_edge(t.half_edge(k)).norm());
+        2.0 * mesh.area(t) / edges.into_iter().fold(0.0, f64::max)
+    };
+    let mut radii = vec![most; mesh.n_vertices()];
+    for (t, corners) in mesh.triangle_ids().zip(mesh.triangles()) {
+        let radius = RADIUS_OF_HEIGHT * lowest(t);
+        for &i in corners {
+            radii[i as usize] = radii[i as usize].min(radius);
+        }
+    }
+    radii
+}
+
+impl Contact for SurfaceContact {
+    fn name(&self) -> &'static str {
+        "contact"
+    }
+
+    fn begin(&mut self, stage: Stage<'_>, times: [f64; 2], mass: &[f64]) {
+        self.inertia.clear();
+        self.inertia.extend(mass.iter().map(|m| m / (stage.h * stage.h)));
+        if let Some(moving) = &mut self.obstacles {
+            moving.now = (moving.fixed.motion)(times[0]);
+            moving.then = (moving.fixed.motion)(times[1]);
+        }
+        self.find_slips(stage.x_t0, times, stage.h);
+        for slip in &mut self.slips {
+            slip.set_base(stage.base);
+        }
+    }
+
+    fn look_ahead(&mut self, x: &[World3], step: &[World3]) -> f64 {
+        let x_t1: Vec<World3> = x.iter().zip(step).map(|(x, d)| x + d).collect();
+        let radius = |v: u32| self.radius[v as usize];
+        let body = Body::moving(&self.cloth, x, &x_t1, &radius);
+        body.update_tree(&mut self.cloth_tree);
+        self.near[0] = if self.settings.self_contact {
+            swept::candidates_within(body, &self.cloth_tree)
+        } else {
+            Vec::new()
+        };
+        if let Some(moving) = &mut self.obstacles {
+            let half = 0.5 * self.settings.thickness;
+            let room = |_: u32| half;
+            let other = Body::moving(&moving.fixed.surface, &moving.now, &moving.then, &room);
+            other.update_tree(&mut moving.tree);
+            self.near[1] =
+                swept::candidates_between((body, &self.cloth_tree), (other, &moving.tree));
+        }
+        let pairs: Vec<(usize, Pair)> = self.pairs().collect();
+        let mut free = vec![1.0; pairs.len()];
+        let (now, then): (&[World3], &[World3]) =
+            self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then));
+        par::fill(&mut free, |k| {
+            let (set, pair) = pairs[k];
+            let sides = self.sides(set, pair);
+            let x_t0 = self.corners_at(&sides, x, now);
+            let x_t1 = self.corners_at(&sides, &x_t1, then);
+            match pair.kind {
+                PairKind::EdgeEdge => ccd::edge_edge(&x_t0, &x_t1, 0.0).free_until(),
+                _ => ccd::vertex_triangle(&x_t0, &x_t1, 0.0).free_until(),
+            }
+        });
+        let hits = pairs.iter().zip(&free).filter(|((set, _), free)| *set == 1 && **free < 1.0);
+        self.in_the_way = hits.map(|((_, pair), _)| *pair).collect();
+        free.into_iter().fold(1.0, f64::min)
+    }
+
+    fn carry(&self, x: &[World3], step: &mut [World3]) -> bool {
+        let Some(moving) = &self.obstacles else { return false };
+        let mut carried: Vec<Option<World3>> = vec![None; x.len()];
+        for pair in &self.in_the_way {
+            let sides = self.sides(1, *pair);
+            let weights = sides.closest(&self.corners(&sides, x)).weights;
+            let theirs = (0..4).filter(|&k| !sides.is_cloth[k]);
+            let way = |k: usize| {
+                let i = sides.vertices[k] as usize;
+                (moving.then[i] - moving.now[i]) * weights[k].abs()
+            };
+            let way: World3 = theirs.map(way).sum();
+            for k in (0..4).filter(|&k| sides.is_cloth[k]) {
+                let slot = &mut carried[sides.vertices[k] as usize];
+                if slot.is_none_or(|old| old.norm_squared() < way.norm_squared()) {
+                    *slot = Some(way);
+                }
+            }
+        }
+        let mut changed = false;
+        for (step, way) in step.iter_mut().zip(&carried) {
+            if let Some(way) = way.filter(|way| way != step) {
+                *step = way;
+                changed = true;
+            }
+        }
+        changed
+    }
+
+    fn follow(&mut self, share: f64) {
+        if let Some(moving) = &mut self.obstacles {
+            if share == 1.0 {
+                moving.now.clone_from(&moving.then);
+            } else {
+                for (now, then) in moving.now.iter_mut().zip(&moving.then) {
+                    *now += (*then - *now) * share;
+                }
+            }
+        }
+    }
+
+    fn has_arrived(&self) -> bool {
+        self.obstacles.as_ref().is_none_or(|moving| moving.now == moving.then)
+    }
+
+    fn energy(&self, x: &[World3]) -> f64 {
+        let n = self.near[0].len();
+        let pair = |k: usize| {
+            let (set, pair) = if k < n { (0, self.near[0][k]) } else { (1, self.near[1][k - n]) };
+            let sides = self.sides(set, pair);
+            let closest = sides.closest(&self.corners(&sides, x));
+            let [energy, ..] =
+                cloth_dynamics::contact::barrier(closest.distance, self.thickness(&sides));
+            if energy == 0.0 { 0.0 } else { energy * self.stiffness(&sides) }
+        };
+        let repulsion = par::sum(n + self.near[1].len(), pair);
+        repulsion + self.slips.iter().map(|slip| slip.energy(x)).sum::<f64>()
+    }
+
+    fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {
+        for (set, pair) in self.pairs() {
+            let sides = self.sides(set, pair);
+            let closest = sides.closest(&self.corners(&sides, x));
+            let [_, slope, curvature] =
+                cloth_dynamics::contact::barrier(closest.distance, self.thickness(&sides));
+            if slope < 0.0 {
+                let k = self.stiffness(&sides);
+                let normal = closest.offset / closest.distance;
+                sides.add_gradient(&closest.weights, &(normal * (slope * k)), gradient);
+                // The distance is nearly linear, and what is left of its Hessian is not positive.
+                let along = normal * normal.transpose() * (curvature * k);
+                sides.add_stiffness(&closest.weights, &along, stiffness);
+            }
+        }
+        for slip in &self.slips {
+            slip.add_system(x, gradient, stiffness);
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! The two sides of a contact: which of its four vertices are cloth, and what of it goes to them.
+
+use cloth_dynamics::solver::BlockMatrix;
+use collision::{Pair, PairKind, distance};
+use mesh_core::World3;
+use nalgebra::Matrix3;
+
+/// A pair of features with its vertices.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sides {
+    /// The vertices, of the cloth or of the obstacles.
+    pub(super) vertices: [u32; 4],
+    /// Which belong to the first feature.
+    pub(super) is_first: [bool; 4],
+    /// Which are the cloth's.
+    pub(super) is_cloth: [bool; 4],
+    is_edges: bool,
+}
+
+/// The closest points of a pair.
+pub(super) struct ClosestPoints {
+    pub(super) weights: [f64; 4],
+    pub(super) offset: World3,
+    pub(super) distance: f64,
+}
+
+impl Sides {
+    pub(super) fn new(pair: Pair, vertices: [u32; 4], within_cloth: bool) -> Sides {
+        let of_first = pair.of_first();
+        let is_edges = pair.kind == PairKind::EdgeEdge;
+        let front = if is_edges { 2 } else { 1 };
+        Sides {
+            vertices,
+            is_first: std::array::from_fn(|k| k < front),
+            is_cloth: of_first.map(|is_first| within_cloth || is_first),
+            is_edges,
+        }
+    }
+
+    pub(super) fn closest(&self, x: &[World3; 4]) -> ClosestPoints {
+        let (weights, offset, squared) = if self.is_edges {
+            let closest = distance::edge_edge(x);
+            (closest.weights, closest.offset, closest.squared)
+        } else {
+            let closest = distance::vertex_triangle(x);
+            (closest.weights, closest.offset, closest.squared)
+        };
+        ClosestPoints { weights, offset, distance: squared.sqrt() }
+    }
+
+    /// Adds `g`, a derivative by the offset, to the vertices of the cloth.
+    pub(super) fn add_gradient(&self, weights: &[f64; 4], g: &World3, to: &mut [World3]) {
+        for k in (0..4).filter(|&k| self.is_cloth[k]) {
+            to[self.vertices[k] as usize] += g * weights[k];
+        }
+    }
+
+    /// Adds a stiffness of the offset to the blocks within each side, which the pattern always has.
+    /// Where both sides are cloth, twice as much: (a + b)ᵀK(a + b) ≤ 2 aᵀK a + 2 bᵀK b.
+    pub(super) fn add_stiffness(
+        &self,
+        weights: &[f64; 4],
+        stiffness: &Matrix3<f64>,
+        to: &mut BlockMatrix,
+    ) {
+        let factor = if self.is_cloth == [true; 4] { 2.0 } else { 1.0 };
+        for a in (0..4).filter(|&a| self.is_cloth[a]) {
+            for b in (0..=a).filter(|&b| self.is_cloth[b] && self.is_first[a] == self.is_first[b]) {
+                let (i, j) = (self.vertices[a] as usize, self.vertices[b] as usize);
+                let slot = to.pattern().slot(i.max(j), i.min(j)).expect("edges are in the pattern");
+                // The blocks are symmetric, so that their order does not matter.
+                to.add(slot, &(stiffness * (factor * weights[a] * weights[b])));
+            }
+        }
+    }
+}

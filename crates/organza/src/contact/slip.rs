@@ -1,0 +1,72 @@
+//! Friction: what touches at the start of a stage resists sliding in the plane of its contact there,
+//! with at most μ times the normal force there (lagged Coulomb friction, Li2020 §5).
+
+use super::pair::Sides;
+use cloth_dynamics::contact::friction;
+use cloth_dynamics::solver::BlockMatrix;
+use collision::proximity::Proximity;
+use mesh_core::World3;
+use nalgebra::Matrix3;
+
+/// One contact with its friction.
+pub(super) struct Slip {
+    sides: Sides,
+    weights: [f64; 4],
+    /// Onto the tangent plane.
+    tangential: Matrix3<f64>,
+    /// Friction coefficient times normal force (N).
+    most: f64,
+    /// Slip below which the force is less (m).
+    y_stick: f64,
+    /// Way of the obstacle's side during the stage, less the cloth's side's base (m).
+    offset: World3,
+}
+
+impl Slip {
+    /// Of a contact whose second side, if an obstacle's, goes the weighted way `way` (m); `None`
+    /// where there is no friction.
+    pub(super) fn new(
+        sides: Sides,
+        p: &Proximity,
+        most: f64,
+        way: World3,
+        y_stick: f64,
+    ) -> Option<Slip> {
+        let is_some = most > 0.0 && most.is_finite() && p.distance > 0.0;
+        is_some.then(|| {
+            let normal = p.offset / p.distance;
+            let tangential = Matrix3::identity() - normal * normal.transpose();
+            Slip { sides, weights: p.weights, tangential, most, y_stick, offset: way }
+        })
+    }
+
+    /// Slip is measured from these positions of the cloth (m).
+    pub(super) fn set_base(&mut self, base: &[World3]) {
+        self.offset -= self.of_cloth(base);
+    }
+
+    fn of_cloth(&self, x: &[World3]) -> World3 {
+        let cloth = (0..4).filter(|&k| self.sides.is_cloth[k]);
+        cloth.map(|k| x[self.sides.vertices[k] as usize] * self.weights[k]).sum()
+    }
+
+    fn slip(&self, x: &[World3]) -> World3 {
+        self.tangential * (self.of_cloth(x) + self.offset)
+    }
+
+    pub(super) fn energy(&self, x: &[World3]) -> f64 {
+        self.most * friction(self.slip(x).norm(), self.y_stick)[0]
+    }
+
+    pub(super) fn add_system(&self, x: &[World3], gradient: &mut [World3], to: &mut BlockMatrix) {
+        let slip = self.slip(x);
+        let y = slip.norm();
+        let [_, force, slope] = friction(y, self.y_stick);
+        let (across, along, direction) =
+            if y > 0.0 { (force / y, slope, slip / y) } else { (slope, slope, World3::zeros()) };
+        self.sides.add_gradient(&self.weights, &(direction * (self.most * force)), gradient);
+        let stiffness =
+            self.tangential * across + direction * direction.transpose() * (along - across);
+        self.sides.add_stiffness(&self.weights, &(stiffness * self.most), to);
+    }
+}
