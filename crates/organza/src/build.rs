@@ -6,8 +6,9 @@ mod piece;
 
 pub(crate) use piece::Piece;
 
+use crate::contact::ContactSettings;
 use crate::handles::Handles;
-use crate::obstacle::{ContactSettings, Obstacle};
+use crate::obstacle::Obstacle;
 use crate::scene::{self, Loaded, limits};
 use cloth_dynamics::Fabric;
 use cloth_dynamics::law::NotPositive;

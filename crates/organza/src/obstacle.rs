@@ -130,14 +130,3 @@ impl Obstacle {
         self.rest.len()
     }
 }
-
-/// How things touch.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactSettings {
-    /// Distance that is kept between the middle surfaces of things that touch (m).
-    pub thickness: f64,
-    /// Coefficient of friction of cloth on cloth (1).
-    pub friction: f64,
-    /// Whether cloth touches cloth, itself included.
-    pub self_contact: bool,
-}

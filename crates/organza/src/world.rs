@@ -4,8 +4,9 @@
 mod tests;
 
 use crate::build::{BuildError, Built, Garment, build};
+use crate::contact::ContactSettings;
 use crate::handles::{Handles, by_name};
-use crate::obstacle::{ContactSettings, Obstacle};
+use crate::obstacle::Obstacle;
 use crate::remeshing::Remeshing;
 use crate::report::{FrameReport, Seconds, StretchRange};
 use crate::scene::format::{Integrator, LinearSolver as Method};

@@ -6,8 +6,8 @@ use super::format::{
     Tunic, Wind,
 };
 use super::motion::{Motion, Transform};
+use crate::contact::ContactSettings;
 use crate::fabric::Fabric;
-use crate::obstacle::ContactSettings;
 
 /// Everything a run needs to know, except the bytes of mesh files.
 #[derive(Debug, Clone, PartialEq)]

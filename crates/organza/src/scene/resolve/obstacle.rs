@@ -8,7 +8,7 @@ use super::super::limits::{
 };
 use super::handle::{check_motion, check_transform};
 use super::{Context, beyond, names};
-use crate::obstacle::ContactSettings;
+use crate::contact::ContactSettings;
 
 /// Checks all obstacles.
 pub(super) fn resolve(
