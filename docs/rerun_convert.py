@@ -73,22 +73,9 @@ def log_frame(frame):
     mark = frame["/frame"]
     rr.set_time("frame", sequence=mark.frame)
     rr.set_time("time", duration=mark.time_s)
-    for deletion in frame["/cloth"].deletions:
-        rr.log(f"world/{deletion.id}", rr.Clear(recursive=True))
-    for entity in frame["/cloth"].entities:
-        for mesh in entity.triangles:
-            points = np.array([(p.x, p.y, p.z) for p in mesh.points]).reshape(-1, 3)
-            triangles = np.array(mesh.indices, dtype=np.uint32).reshape(-1, 3)
-            color = [mesh.color.r, mesh.color.g, mesh.color.b, mesh.color.a]
-            rr.log(
-                f"world/{entity.id}",
-                rr.Mesh3D(
-                    vertex_positions=points,
-                    triangle_indices=triangles,
-                    vertex_normals=normals(points, triangles),
-                    albedo_factor=color,
-                ),
-            )
+    log_meshes("world", frame["/cloth"])
+    if "/obstacles" in frame:
+        log_meshes("world/obstacles", frame["/obstacles"])
     if "/tf" in frame:
         for t in frame["/tf"].transforms:
             rr.log(
@@ -109,6 +96,25 @@ def log_frame(frame):
             ),
         )
     log_numbers("report", frame["/report"])
+
+
+def log_meshes(path, scene):
+    for deletion in scene.deletions:
+        rr.log(f"{path}/{deletion.id}", rr.Clear(recursive=True))
+    for entity in scene.entities:
+        for mesh in entity.triangles:
+            points = np.array([(p.x, p.y, p.z) for p in mesh.points]).reshape(-1, 3)
+            triangles = np.array(mesh.indices, dtype=np.uint32).reshape(-1, 3)
+            color = [mesh.color.r, mesh.color.g, mesh.color.b, mesh.color.a]
+            rr.log(
+                f"{path}/{entity.id}",
+                rr.Mesh3D(
+                    vertex_positions=points,
+                    triangle_indices=triangles,
+                    vertex_normals=normals(points, triangles),
+                    albedo_factor=color,
+                ),
+            )
 
 
 def normals(points, triangles):

@@ -2,8 +2,8 @@
 
 use prost::Message;
 
-use crate::encode::CAMERA;
-use crate::frame::{OwnedFrame, OwnedGarment, OwnedTransform};
+use crate::encode::{CAMERA, Shown};
+use crate::frame::{OwnedFrame, OwnedGarment, OwnedObstacle, OwnedTransform};
 use crate::proto::{
     CameraCalibration, ClothMaterial, Doubles, FrameTransforms, GarmentMaterial, SceneEntity,
     SceneUpdate,
@@ -36,6 +36,12 @@ pub(crate) fn decode(
         .map(|(entity, packed)| garment(entity, packed))
         .collect::<Result<_, _>>()?;
 
+    let obstacles = match find(Topic::Obstacles) {
+        Some(bytes) => message::<SceneUpdate>(Topic::Obstacles, bytes)?.entities,
+        None => Vec::new(),
+    };
+    let obstacles = obstacles.into_iter().map(obstacle).collect::<Result<_, _>>()?;
+
     let mut transforms = Vec::new();
     let mut camera_pose = None;
     if let Some(bytes) = find(Topic::Transforms) {
@@ -57,17 +63,24 @@ pub(crate) fn decode(
         None => None,
     };
     let report = decode_report(report)?;
-    Ok(OwnedFrame { index: info.index, time_s: info.time_s, garments, camera, transforms, report })
+    let FrameInfo { index, time_s } = info;
+    Ok(OwnedFrame { index, time_s, garments, obstacles, camera, transforms, report })
 }
 
 pub(crate) fn decode_report(bytes: &[u8]) -> Result<serde_json::Value, String> {
     serde_json::from_slice(bytes).map_err(|e| format!("{}: {e}", Topic::Report.name()))
 }
 
-/// Names of the garments drawn by a message on the cloth topic.
-pub(crate) fn garment_names(bytes: &[u8]) -> Result<Vec<String>, String> {
-    let scene: SceneUpdate = message(Topic::Cloth, bytes)?;
-    Ok(scene.entities.into_iter().map(|entity| entity.id).collect())
+/// Names of what the messages of a frame draw.
+pub(crate) fn shown(geometry: &[(Topic, Vec<u8>)]) -> Result<Shown, String> {
+    let names = |topic: Topic| -> Result<Vec<String>, String> {
+        let Some((_, bytes)) = geometry.iter().find(|(t, _)| *t == topic) else {
+            return Ok(Vec::new());
+        };
+        let scene: SceneUpdate = message(topic, bytes)?;
+        Ok(scene.entities.into_iter().map(|entity| entity.id).collect())
+    };
+    Ok(Shown { garments: names(Topic::Cloth)?, obstacles: names(Topic::Obstacles)? })
 }
 
 fn message<M: Message + Default>(topic: Topic, bytes: &[u8]) -> Result<M, String> {
@@ -75,27 +88,38 @@ fn message<M: Message + Default>(topic: Topic, bytes: &[u8]) -> Result<M, String
 }
 
 fn garment(entity: SceneEntity, packed: &GarmentMaterial) -> Result<OwnedGarment, String> {
-    let name = entity.id;
+    let name = entity.id.clone();
     let told = |what: String| format!("garment {name:?}: {what}");
     if packed.name != name {
         return Err(told(format!("its material coordinates are those of {:?}", packed.name)));
     }
+    let OwnedObstacle { name: _, points, triangles, color } = mesh(entity).map_err(told)?;
+    let material = material::unpack(packed, points.len(), &triangles).map_err(told)?;
+    Ok(OwnedGarment { name, points, triangles, material, color })
+}
+
+fn obstacle(entity: SceneEntity) -> Result<OwnedObstacle, String> {
+    let name = entity.id.clone();
+    mesh(entity).map_err(|what| format!("obstacle {name:?}: {what}"))
+}
+
+/// What is drawn of an entity, or what is wrong with it.
+fn mesh(entity: SceneEntity) -> Result<OwnedObstacle, String> {
     let [list]: [_; 1] = entity
         .triangles
         .try_into()
-        .map_err(|lists: Vec<_>| told(format!("{} triangle lists instead of 1", lists.len())))?;
+        .map_err(|lists: Vec<_>| format!("{} triangle lists instead of 1", lists.len()))?;
     let points: Vec<[f64; 3]> = list.points.into_iter().map(|Doubles(p)| p).collect();
     let (triangles, rest) = list.indices.as_chunks::<3>();
     if !rest.is_empty() {
-        return Err(told(format!("{} indices, not a multiple of 3", list.indices.len())));
+        return Err(format!("{} indices, not a multiple of 3", list.indices.len()));
     }
     if let Some(p) = list.indices.iter().find(|&&p| p as usize >= points.len()) {
-        return Err(told(format!("index {p} of {} points", points.len())));
+        return Err(format!("index {p} of {} points", points.len()));
     }
     let triangles = triangles.to_vec();
-    let material = material::unpack(packed, points.len(), &triangles).map_err(told)?;
     let Doubles(color) = list.color.unwrap_or_default();
-    Ok(OwnedGarment { name, points, triangles, material, color: color.map(|c| c as f32) })
+    Ok(OwnedObstacle { name: entity.id, points, triangles, color: color.map(|c| c as f32) })
 }
 
 fn camera(

@@ -10,7 +10,7 @@ use crate::proto::{
     SceneEntityDeletion, SceneUpdate, TriangleListPrimitive,
 };
 use crate::topic::Topic;
-use crate::{Camera, Error, Frame, Garment, material};
+use crate::{Camera, Error, Frame, Garment, Obstacle, material};
 
 /// Frame of reference of everything that is drawn.
 pub(crate) const WORLD: &str = "world";
@@ -23,6 +23,22 @@ pub(crate) struct EncodedFrame {
     pub(crate) report: Vec<u8>,
 }
 
+/// Names of what a frame shows.
+#[derive(Debug, Default)]
+pub(crate) struct Shown {
+    pub(crate) garments: Vec<String>,
+    pub(crate) obstacles: Vec<String>,
+}
+
+impl Shown {
+    pub(crate) fn by(frame: &Frame<'_>) -> Self {
+        Self {
+            garments: frame.garments.iter().map(|g| g.name.to_owned()).collect(),
+            obstacles: frame.obstacles.iter().map(|o| o.name.to_owned()).collect(),
+        }
+    }
+}
+
 /// Time on the clock of the file (ns), or what is wrong with it.
 pub(crate) fn time_ns(time_s: f64) -> Result<u64, String> {
     let ns = (time_s * 1e9).round();
@@ -33,19 +49,14 @@ pub(crate) fn time_ns(time_s: f64) -> Result<u64, String> {
     Ok(ns as u64)
 }
 
-/// Encodes `frame`; `gone` names garments of the frame before that are to vanish from view.
-pub(crate) fn encode(frame: &Frame<'_>, gone: &[&str]) -> Result<EncodedFrame, Error> {
+/// Encodes `frame`; what `before` names and the frame does not is to vanish from view.
+pub(crate) fn encode(frame: &Frame<'_>, before: &Shown) -> Result<EncodedFrame, Error> {
     check(frame)?;
     let ns = time_ns(frame.time_s).map_err(|what| refuse(frame, what))?;
     let timestamp =
         Timestamp { seconds: (ns / 1_000_000_000) as i64, nanos: (ns % 1_000_000_000) as i32 };
-    let scene = SceneUpdate {
-        deletions: gone
-            .iter()
-            .map(|id| SceneEntityDeletion { timestamp: Some(timestamp), id: (*id).into() })
-            .collect(),
-        entities: frame.garments.iter().map(|g| entity(g, timestamp)).collect(),
-    };
+    let garments = frame.garments.iter().map(Drawn::from).collect();
+    let cloth = scene(garments, &before.garments, timestamp);
     let material = ClothMaterial {
         garments: frame
             .garments
@@ -54,7 +65,12 @@ pub(crate) fn encode(frame: &Frame<'_>, gone: &[&str]) -> Result<EncodedFrame, E
             .collect(),
     };
     let mut geometry =
-        vec![(Topic::Cloth, scene.encode_to_vec()), (Topic::Material, material.encode_to_vec())];
+        vec![(Topic::Cloth, cloth.encode_to_vec()), (Topic::Material, material.encode_to_vec())];
+    let obstacles = frame.obstacles.iter().map(Drawn::from).collect();
+    let obstacles = scene(obstacles, &before.obstacles, timestamp);
+    if obstacles != SceneUpdate::default() {
+        geometry.push((Topic::Obstacles, obstacles.encode_to_vec()));
+    }
     let transforms = transforms(frame, timestamp);
     if !transforms.is_empty() {
         geometry.push((Topic::Transforms, FrameTransforms { transforms }.encode_to_vec()));
@@ -86,8 +102,18 @@ fn check(frame: &Frame<'_>) -> Result<(), Error> {
                 format!("garment name {:?} is empty or used twice", garment.name),
             ));
         }
-        check_garment(garment)
+        check_mesh(&Drawn::from(garment))
+            .and_then(|()| check_material(garment))
             .map_err(|what| refuse(frame, format!("garment {:?} has {what}", garment.name)))?;
+    }
+    let mut names = BTreeSet::new();
+    for obstacle in frame.obstacles {
+        if obstacle.name.is_empty() || !names.insert(obstacle.name) {
+            let what = format!("obstacle name {:?} is empty or used twice", obstacle.name);
+            return Err(refuse(frame, what));
+        }
+        check_mesh(&Drawn::from(obstacle))
+            .map_err(|what| refuse(frame, format!("obstacle {:?} has {what}", obstacle.name)))?;
     }
     let mut names = BTreeSet::from([WORLD, CAMERA]);
     for transform in frame.transforms {
@@ -101,25 +127,61 @@ fn check(frame: &Frame<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-fn check_garment(garment: &Garment<'_>) -> Result<(), String> {
-    let (n_points, n_triangles) = (garment.points.len(), garment.triangles.len());
+/// What garments and obstacles have in common.
+struct Drawn<'a> {
+    name: &'a str,
+    points: &'a [[f64; 3]],
+    triangles: &'a [[u32; 3]],
+    color: [f32; 4],
+}
+
+impl<'a> From<&Garment<'a>> for Drawn<'a> {
+    fn from(garment: &Garment<'a>) -> Self {
+        let Garment { name, points, triangles, color, .. } = *garment;
+        Self { name, points, triangles, color }
+    }
+}
+
+impl<'a> From<&Obstacle<'a>> for Drawn<'a> {
+    fn from(obstacle: &Obstacle<'a>) -> Self {
+        let Obstacle { name, points, triangles, color } = *obstacle;
+        Self { name, points, triangles, color }
+    }
+}
+
+fn check_mesh(mesh: &Drawn<'_>) -> Result<(), String> {
+    let (n_points, n_triangles) = (mesh.points.len(), mesh.triangles.len());
     // Corner numbers are u32 too, with one value spare.
     if n_points.max(3 * n_triangles) >= u32::MAX as usize {
         return Err(format!("{n_points} points and {n_triangles} triangles, too many"));
     }
-    if garment.material.len() != n_triangles {
-        return Err(format!(
-            "material coordinates for {} triangles, but {n_triangles} triangles",
-            garment.material.len()
-        ));
-    }
-    match garment.triangles.iter().position(|t| t.iter().any(|&p| p as usize >= n_points)) {
-        Some(t) => Err(format!("triangle {t} = {:?}, but {n_points} points", garment.triangles[t])),
+    match mesh.triangles.iter().position(|t| t.iter().any(|&p| p as usize >= n_points)) {
+        Some(t) => Err(format!("triangle {t} = {:?}, but {n_points} points", mesh.triangles[t])),
         None => Ok(()),
     }
 }
 
-fn entity(garment: &Garment<'_>, timestamp: Timestamp) -> SceneEntity {
+fn check_material(garment: &Garment<'_>) -> Result<(), String> {
+    let (n, n_triangles) = (garment.material.len(), garment.triangles.len());
+    if n == n_triangles {
+        return Ok(());
+    }
+    Err(format!("material coordinates for {n} triangles, but {n_triangles} triangles"))
+}
+
+/// The update that draws `meshes` and removes what only the frame `before` showed.
+fn scene(meshes: Vec<Drawn<'_>>, before: &[String], timestamp: Timestamp) -> SceneUpdate {
+    let names: BTreeSet<&str> = meshes.iter().map(|mesh| mesh.name).collect();
+    let gone = before.iter().filter(|id| !names.contains(id.as_str()));
+    SceneUpdate {
+        deletions: gone
+            .map(|id| SceneEntityDeletion { timestamp: Some(timestamp), id: id.clone() })
+            .collect(),
+        entities: meshes.iter().map(|mesh| entity(mesh, timestamp)).collect(),
+    }
+}
+
+fn entity(mesh: &Drawn<'_>, timestamp: Timestamp) -> SceneEntity {
     let still = Pose {
         position: Some(Doubles([0.0; 3])),
         orientation: Some(Doubles([0.0, 0.0, 0.0, 1.0])),
@@ -127,15 +189,15 @@ fn entity(garment: &Garment<'_>, timestamp: Timestamp) -> SceneEntity {
     SceneEntity {
         timestamp: Some(timestamp),
         frame_id: WORLD.into(),
-        id: garment.name.into(),
+        id: mesh.name.into(),
         // Zero: until replaced.
         lifetime: Some(Duration::default()),
         frame_locked: true,
         triangles: vec![TriangleListPrimitive {
             pose: Some(still),
-            points: garment.points.iter().map(|p| Doubles(*p)).collect(),
-            color: Some(Doubles(garment.color.map(f64::from))),
-            indices: garment.triangles.as_flattened().to_vec(),
+            points: mesh.points.iter().map(|p| Doubles(*p)).collect(),
+            color: Some(Doubles(mesh.color.map(f64::from))),
+            indices: mesh.triangles.as_flattened().to_vec(),
         }],
     }
 }

@@ -10,6 +10,9 @@ pub struct Frame<'a> {
     pub time_s: f64,
     /// Garments in the order in which they are read back. Names are unique and not empty.
     pub garments: &'a [Garment<'a>],
+    /// Bodies that cloth cannot pass, where they are now, in the order in which they are read back.
+    /// Names are unique and not empty; garments may have the same.
+    pub obstacles: &'a [Obstacle<'a>],
     /// The camera that watches the scene, if any.
     pub camera: Option<Camera>,
     /// Where rigid things are. The names `world` and `camera` are taken.
@@ -30,6 +33,19 @@ pub struct Garment<'a> {
     /// Material coordinates of every triangle corner (m), `n_triangles`; a point on a seam has
     /// other ones on the other side.
     pub material: &'a [[[f64; 2]; 3]],
+    /// Colour: red, green, blue, alpha from 0 to 1.
+    pub color: [f32; 4],
+}
+
+/// An obstacle as a triangle mesh.
+#[derive(Clone, Copy, Debug)]
+pub struct Obstacle<'a> {
+    /// Name, the id of the entity that Foxglove draws.
+    pub name: &'a str,
+    /// World positions (m), `n_points`.
+    pub points: &'a [[f64; 3]],
+    /// Points of every triangle.
+    pub triangles: &'a [[u32; 3]],
     /// Colour: red, green, blue, alpha from 0 to 1.
     pub color: [f32; 4],
 }
@@ -71,6 +87,8 @@ pub struct OwnedFrame {
     pub time_s: f64,
     /// See [`Frame::garments`].
     pub garments: Vec<OwnedGarment>,
+    /// See [`Frame::obstacles`].
+    pub obstacles: Vec<OwnedObstacle>,
     /// See [`Frame::camera`].
     pub camera: Option<Camera>,
     /// See [`Frame::transforms`].
@@ -94,6 +112,19 @@ pub struct OwnedGarment {
     pub color: [f32; 4],
 }
 
+/// An obstacle read back.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OwnedObstacle {
+    /// See [`Obstacle::name`].
+    pub name: String,
+    /// See [`Obstacle::points`] (m).
+    pub points: Vec<[f64; 3]>,
+    /// See [`Obstacle::triangles`]; every index is below `points.len()`.
+    pub triangles: Vec<[u32; 3]>,
+    /// See [`Obstacle::color`].
+    pub color: [f32; 4],
+}
+
 /// A transform read back.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OwnedTransform {
@@ -113,6 +144,18 @@ impl OwnedGarment {
             points: &self.points,
             triangles: &self.triangles,
             material: &self.material,
+            color: self.color,
+        }
+    }
+}
+
+impl OwnedObstacle {
+    /// The obstacle as the recorder takes it.
+    pub fn borrowed(&self) -> Obstacle<'_> {
+        Obstacle {
+            name: &self.name,
+            points: &self.points,
+            triangles: &self.triangles,
             color: self.color,
         }
     }

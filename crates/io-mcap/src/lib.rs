@@ -8,6 +8,7 @@
 //! |---|---|---|
 //! | `/cloth` | `foxglove.SceneUpdate`: one indexed triangle list per garment, in doubles | every frame |
 //! | `/cloth/material` | `organza.ClothMaterial`: material coordinates of every triangle corner | every frame |
+//! | `/obstacles` | `foxglove.SceneUpdate`: one indexed triangle list per obstacle, in doubles | every frame, if there are any |
 //! | `/tf` | `foxglove.FrameTransforms`: rigid transforms into `world`, the camera's among them | if there are any |
 //! | `/camera` | `foxglove.CameraCalibration` | if there is a camera |
 //! | `/frame` | `organza.FrameMark`: frame index, exact time | every frame |
@@ -44,6 +45,7 @@
 //!         index,
 //!         time_s,
 //!         garments: &[garment],
+//!         obstacles: &[],
 //!         camera: None,
 //!         transforms: &[],
 //!         report: &json!({ "substeps": 8 }),
@@ -90,7 +92,8 @@ mod topic;
 pub use checkpoint::{Checkpoint, CheckpointInfo, Column};
 pub use error::Error;
 pub use frame::{
-    Camera, Frame, FrameInfo, Garment, OwnedFrame, OwnedGarment, OwnedTransform, Transform,
+    Camera, Frame, FrameInfo, Garment, Obstacle, OwnedFrame, OwnedGarment, OwnedObstacle,
+    OwnedTransform, Transform,
 };
 pub use header::{Attachment, AttachmentInfo, Header, Overwrite};
 pub use limits::Limits;

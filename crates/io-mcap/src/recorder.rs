@@ -1,12 +1,11 @@
 //! Writing a recording, frame by frame.
 
-use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::Path;
 
 use prost::Message as _;
 
-use crate::encode::{self, EncodedFrame};
+use crate::encode::{self, EncodedFrame, Shown};
 use crate::proto::FrameMark;
 use crate::recording_file::RecordingFile;
 use crate::stream::{Stamp, Stream};
@@ -28,8 +27,8 @@ pub struct Recorder<W: Write> {
     limits: Limits,
     last: Option<FrameInfo>,
     n_frames: u64,
-    /// Garments of the last frame.
-    garments: Vec<String>,
+    /// What the last frame showed.
+    shown: Shown,
     last_checkpoint: Option<u64>,
 }
 
@@ -81,7 +80,7 @@ impl<W: Write> Recorder<W> {
             limits: Limits::default(),
             last: None,
             n_frames: 0,
-            garments: Vec::new(),
+            shown: Shown::default(),
             last_checkpoint: None,
         }
     }
@@ -99,13 +98,10 @@ impl<W: Write> Recorder<W> {
     /// large): nothing is written, and recording may continue. Or the writer refuses: then the
     /// recorder stops for good.
     pub fn frame(&mut self, frame: &Frame<'_>) -> Result<(), Error> {
-        let names: BTreeSet<&str> = frame.garments.iter().map(|g| g.name).collect();
-        let gone: Vec<&str> =
-            self.garments.iter().map(|g| &**g).filter(|g| !names.contains(g)).collect();
-        let encoded = encode::encode(frame, &gone)?;
+        let encoded = encode::encode(frame, &self.shown)?;
         let info = FrameInfo { index: frame.index, time_s: frame.time_s };
         self.encoded_frame(info, &encoded)?;
-        self.garments = frame.garments.iter().map(|g| g.name.to_owned()).collect();
+        self.shown = Shown::by(frame);
         Ok(())
     }
 
@@ -132,9 +128,9 @@ impl<W: Write> Recorder<W> {
         }
     }
 
-    /// Sets what [`Self::frame`] compares the next frame's garments with.
-    pub(crate) fn set_garments(&mut self, names: Vec<String>) {
-        self.garments = names;
+    /// Sets what [`Self::frame`] compares the next frame with.
+    pub(crate) fn set_shown(&mut self, shown: Shown) {
+        self.shown = shown;
     }
 
     pub(crate) fn encoded_frame(

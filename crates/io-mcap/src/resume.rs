@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use crate::recording_file::RecordingFile;
 use crate::stream::Stream;
-use crate::topic::Topic;
 use crate::{Attachment, Error, Header, Recorder, Recording, decode};
 
 impl Recorder<RecordingFile> {
@@ -80,10 +79,9 @@ fn copy(
             recorder.encoded_checkpoint(entry.info.index, &bytes)?;
         }
         if entry.info.index == up_to_frame {
-            let cloth = encoded.geometry.iter().find(|(topic, _)| *topic == Topic::Cloth);
-            let names = cloth.map_or(Ok(Vec::new()), |(_, bytes)| decode::garment_names(bytes));
             let offset = recording.scan().chunks[entry.chunks.0].offset;
-            recorder.set_garments(names.map_err(|what| Error::damaged(offset, what))?);
+            let shown = decode::shown(&encoded.geometry);
+            recorder.set_shown(shown.map_err(|what| Error::damaged(offset, what))?);
         }
     }
     Ok(recorder)

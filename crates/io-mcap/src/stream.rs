@@ -50,10 +50,13 @@ impl<W: Write> Stream<W> {
         // The channels get a chunk of their own: with it every later chunk can be read, even
         // if all others are damaged.
         for topic in Topic::ALL {
-            let (id, name, schema) = (topic.id(), topic.schema_name(), topic.schema());
-            let (message_encoding, schema_encoding) = topic.encodings();
-            writer.add_schema_with_id(id, name, schema_encoding, &schema)?;
-            writer.add_channel_with_id(id, id, topic.name(), message_encoding, &BTreeMap::new())?;
+            let (id, schema_id) = (topic.id(), topic.schema_id());
+            let (message_encoding, encoding) = topic.encodings();
+            if schema_id == id {
+                writer.add_schema_with_id(id, topic.schema_name(), encoding, &topic.schema())?;
+            }
+            let (name, none) = (topic.name(), BTreeMap::new());
+            writer.add_channel_with_id(id, schema_id, name, message_encoding, &none)?;
         }
         writer.flush()?;
         Ok(Self { writer })

@@ -17,10 +17,12 @@ pub(crate) enum Topic {
     Report,
     /// Exact state.
     Checkpoint,
+    /// The obstacles as drawn; last, as the order gives the numbers in the file.
+    Obstacles,
 }
 
 impl Topic {
-    pub(crate) const ALL: [Self; 7] = [
+    pub(crate) const ALL: [Self; 8] = [
         Self::Cloth,
         Self::Material,
         Self::Transforms,
@@ -28,11 +30,12 @@ impl Topic {
         Self::Mark,
         Self::Report,
         Self::Checkpoint,
+        Self::Obstacles,
     ];
 
     /// What a frame has before its mark.
-    pub(crate) const GEOMETRY: [Self; 4] =
-        [Self::Cloth, Self::Material, Self::Transforms, Self::Camera];
+    pub(crate) const GEOMETRY: [Self; 5] =
+        [Self::Cloth, Self::Material, Self::Obstacles, Self::Transforms, Self::Camera];
 
     /// Topic name in the file.
     pub(crate) const fn name(self) -> &'static str {
@@ -44,6 +47,7 @@ impl Topic {
             Self::Mark => "/frame",
             Self::Report => "/report",
             Self::Checkpoint => "/checkpoint",
+            Self::Obstacles => "/obstacles",
         }
     }
 
@@ -54,7 +58,7 @@ impl Topic {
     /// Full name of the message type.
     pub(crate) const fn schema_name(self) -> &'static str {
         match self {
-            Self::Cloth => "foxglove.SceneUpdate",
+            Self::Cloth | Self::Obstacles => "foxglove.SceneUpdate",
             Self::Material => "organza.ClothMaterial",
             Self::Transforms => "foxglove.FrameTransforms",
             Self::Camera => "foxglove.CameraCalibration",
@@ -79,9 +83,17 @@ impl Topic {
         }
     }
 
-    /// Number of its channel and schema in the file, from 1 on: part of the format.
+    /// Number of its channel in the file, from 1 on: part of the format.
     pub(crate) const fn id(self) -> u16 {
         self as u16 + 1
+    }
+
+    /// Number of its schema in the file: that of the first topic with this type of message.
+    pub(crate) const fn schema_id(self) -> u16 {
+        match self {
+            Self::Obstacles => Self::Cloth.id(),
+            _ => self.id(),
+        }
     }
 }
 

@@ -227,6 +227,20 @@ fn right_crcs_around_wrong_content() {
     };
     let good = frame(cloth(3, &[0, 1, 2]), material(b"flag", 3, &[])).unwrap();
     assert_eq!(good.garments[0].points, [[0.0; 3]; 3]);
+    let with_obstacle = |scene: Vec<u8>| {
+        let messages = [
+            ("/cloth", 0, cloth(3, &[0, 1, 2])),
+            ("/cloth/material", 0, material(b"flag", 3, &[])),
+            ("/obstacles", 0, scene),
+            mark(0, 0, 4),
+            report(0),
+        ];
+        open(&forged(&messages)).unwrap().frame(0)
+    };
+    let good = with_obstacle(cloth(3, &[2, 1, 0])).unwrap();
+    assert_eq!(good.obstacles[0].triangles, [[2, 1, 0]]);
+    let error = with_obstacle(cloth(3, &[2, 1, 3])).unwrap_err().to_string();
+    assert!(error.contains("obstacle \"flag\": index 3 of 3 points"), "{error}");
     let wrong = |scene, coordinates, expected: &str| {
         let error = frame(scene, coordinates).unwrap_err().to_string();
         assert!(error.starts_with("damaged at byte ") && error.contains(expected), "{error}");

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 
 use common::{checkpoint_bits, frame_bits, lend, open};
 use io_mcap::{
-    Attachment, Camera, Checkpoint, Column, Header, OwnedFrame, OwnedGarment, OwnedTransform,
-    Recorder, Status,
+    Attachment, Camera, Checkpoint, Column, Header, OwnedFrame, OwnedGarment, OwnedObstacle,
+    OwnedTransform, Recorder, Status,
 };
 use proptest::collection::{btree_map, vec};
 use proptest::prelude::*;
@@ -48,6 +48,16 @@ fn garment() -> impl Strategy<Value = OwnedGarment> {
         })
 }
 
+/// The mesh of a garment as an obstacle.
+fn obstacle() -> impl Strategy<Value = OwnedObstacle> {
+    garment().prop_map(|OwnedGarment { name, points, triangles, color, .. }| OwnedObstacle {
+        name,
+        points,
+        triangles,
+        color,
+    })
+}
+
 fn camera() -> impl Strategy<Value = Camera> {
     (any::<[u32; 2]>(), quadruple(), triple(), quadruple()).prop_map(
         |([width_px, height_px], [fx, fy, cx, cy], position, rotation)| Camera {
@@ -63,14 +73,17 @@ fn camera() -> impl Strategy<Value = Camera> {
 
 fn frame() -> impl Strategy<Value = OwnedFrame> {
     let garments = btree_map("[a-zé /]{1,8}", garment(), 0..3);
+    let obstacles = btree_map("[a-zé /]{1,8}", obstacle(), 0..3);
     let transforms = btree_map("t.{0,5}", (triple(), quadruple()), 0..3);
     let report = btree_map(".{0,6}", prop_oneof![number(), Just(0.1)], 0..5);
-    (garments, transforms, proptest::option::of(camera()), report, 0.0..1.0f64, 1u64..50).prop_map(
-        |(garments, transforms, camera, report, time_s, index)| OwnedFrame {
+    let meshes = (garments, obstacles);
+    (meshes, transforms, proptest::option::of(camera()), report, 0.0..1.0f64, 1u64..50).prop_map(
+        |((garments, obstacles), transforms, camera, report, time_s, index)| OwnedFrame {
             // Steps for now; summed up when the frames are in a row.
             index,
             time_s,
             garments: garments.into_iter().map(|(name, g)| OwnedGarment { name, ..g }).collect(),
+            obstacles: obstacles.into_iter().map(|(name, o)| OwnedObstacle { name, ..o }).collect(),
             camera,
             transforms: transforms
                 .into_iter()

@@ -125,7 +125,7 @@ fn reports_are_listed_without_reading_the_meshes() {
 }
 
 #[test]
-fn garments_that_vanish_are_deleted_from_view() {
+fn what_vanishes_is_deleted_from_view() {
     #[derive(Clone, PartialEq, prost::Message)]
     struct Deletion {
         #[prost(string, tag = "3")]
@@ -141,18 +141,23 @@ fn garments_that_vanish_are_deleted_from_view() {
         let mut frame = frame(index);
         if index >= 2 {
             frame.garments.remove(0);
+            frame.obstacles.clear();
         }
         lend(&frame, |f| recorder.frame(f)).unwrap();
     }
     let bytes = recorder.finish().unwrap();
-    let deleted: Vec<Vec<String>> = mcap::MessageStream::new(&bytes)
-        .unwrap()
-        .map(Result::unwrap)
-        .filter(|m| m.channel.topic == "/cloth")
-        .map(|m| Update::decode(&*m.data).unwrap().deletions)
-        .map(|deletions| deletions.into_iter().map(|d| d.id).collect())
-        .collect();
-    assert_eq!(deleted, [vec![], vec![], vec!["flag".to_owned()], vec![]]);
+    let deleted = |topic: &str| -> Vec<Vec<String>> {
+        mcap::MessageStream::new(&bytes)
+            .unwrap()
+            .map(Result::unwrap)
+            .filter(|m| m.channel.topic == topic)
+            .map(|m| Update::decode(&*m.data).unwrap().deletions)
+            .map(|deletions| deletions.into_iter().map(|d| d.id).collect())
+            .collect()
+    };
+    assert_eq!(deleted("/cloth"), [vec![], vec![], vec!["flag".to_owned()], vec![]]);
+    // None in frame 0, one in frame 1, which is then removed by a message of its own.
+    assert_eq!(deleted("/obstacles"), [vec![], vec!["rock-0".to_owned()]]);
 }
 
 #[test]
@@ -172,6 +177,8 @@ fn what_cannot_be_recorded_is_refused_and_recording_goes_on() {
     refuse(&|f| f.time_s = -1.0, "time -1 s");
     refuse(&|f| f.time_s = 1e11, "time 100000000000 s");
     refuse(&|f| f.report = serde_json::json!([1]), "not a JSON object");
+    refuse(&|f| f.obstacles[1].name = "rock-0".into(), "\"rock-0\" is empty or used twice");
+    refuse(&|f| f.obstacles[0].triangles[2] = [0, 1, 4], "triangle 2 = [0, 1, 4], but 4 points");
     refuse(&|f| f.garments[1].name = "flag".into(), "\"flag\" is empty or used twice");
     refuse(&|f| f.garments[0].name = String::new(), "\"\" is empty or used twice");
     refuse(&|f| f.garments[1].triangles[5][2] = 49, "triangle 5 = [");

@@ -1,11 +1,14 @@
-//! From a scene's data to meshes, fabrics and handles.
+//! From a scene's data to meshes, fabrics, handles and obstacles.
 
 mod fabric;
+mod obstacle;
 mod piece;
 
 pub(crate) use piece::Piece;
 
+use crate::contact::ContactSettings;
 use crate::handles::Handles;
+use crate::obstacle::Obstacle;
 use crate::scene::{self, Loaded, limits};
 use cloth_dynamics::Fabric;
 use cloth_dynamics::law::NotPositive;
@@ -64,6 +67,17 @@ pub enum BuildError {
         /// What is wrong.
         message: String,
     },
+    /// An obstacle has no usable surface.
+    #[error("obstacles[{obstacle}]: {message}")]
+    Obstacle {
+        /// Index of the obstacle.
+        obstacle: usize,
+        /// What is wrong.
+        message: String,
+    },
+    /// The scene needs contact, which is not simulated yet.
+    #[error("contact is not simulated yet: {0}")]
+    NoContact(&'static str),
     /// The system would be too large.
     #[error("the scene is too large: {0}")]
     TooLarge(String),
@@ -89,11 +103,15 @@ pub struct Built {
     pub garments: Vec<Garment>,
     /// What holds vertices.
     pub handles: Handles,
+    /// Bodies that cloth cannot pass.
+    pub obstacles: Vec<Obstacle>,
+    /// How things touch; absent where nothing does.
+    pub contact: Option<ContactSettings>,
     /// What the user should know.
     pub warnings: Vec<String>,
 }
 
-/// Builds meshes, fabrics and handles of a scene.
+/// Builds meshes, fabrics, handles and obstacles of a scene.
 ///
 /// # Errors
 /// See [`BuildError`].
@@ -140,7 +158,9 @@ pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
     let mesh = Mesh::new(positions.len(), triangles, material, panels).map_err(error)?;
     let density = fabrics.iter().map(|f| f.density).collect();
     let cloth = ClothState::new(mesh, positions, velocities, density).map_err(error)?;
-    Ok(Built { cloth, fabrics, garments, handles, warnings })
+    let obstacles = obstacle::obstacles(loaded)?;
+    let contact = scene.contact;
+    Ok(Built { cloth, fabrics, garments, handles, obstacles, contact, warnings })
 }
 
 /// The cloth that a panel belongs to.

@@ -7,14 +7,14 @@ mod ply;
 
 pub use error::ExportError;
 pub use files::{FilesError, NumberedFiles};
-pub use obj::write_obj;
-pub use ply::write_ply;
+pub use obj::{write_obj, write_obstacles_obj};
+pub use ply::{write_obstacles_ply, write_ply};
 
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 
-use io_mcap::{OwnedGarment, Recording, Status};
+use io_mcap::{OwnedGarment, OwnedObstacle, Recording, Status};
 
 use crate::record::{FrameRange, RunError};
 
@@ -46,6 +46,21 @@ impl Format {
             Format::Ply => write_ply(out, garments),
         }
     }
+
+    /// Writes the obstacles of one frame.
+    ///
+    /// # Errors
+    /// Those of `out`, and `InvalidInput` for a coordinate that is not finite.
+    pub fn write_obstacles(
+        self,
+        out: &mut impl Write,
+        obstacles: &[OwnedObstacle],
+    ) -> io::Result<()> {
+        match self {
+            Format::Obj => write_obstacles_obj(out, obstacles),
+            Format::Ply => write_obstacles_ply(out, obstacles),
+        }
+    }
 }
 
 /// What was written.
@@ -58,8 +73,9 @@ pub struct Written {
 }
 
 /// Writes the frames `range` of the recording at `path` to files `frame_00000.obj` and so on in
-/// `folder`, which is made if it is not there; `each` is called after every file with the number of
-/// files written and to be written.
+/// `folder`, which is made if it is not there. Obstacles, where there are any, go to files of their
+/// own beside them, `obstacles_00000.obj` and so on. `each` is called after every frame with the
+/// number of frames written and to be written.
 ///
 /// # Errors
 /// The recording cannot be read, has none of the frames, a file exists (unless `overwrite`), or
@@ -74,13 +90,19 @@ pub fn export(
 ) -> Result<Written, ExportError> {
     let mut recording = Recording::open(path).map_err(RunError::recording(path))?;
     let frames = selected(&recording, path, range)?;
-    let files = NumberedFiles::prepare(folder, format.extension(), &frames, overwrite)?;
+    let first = recording.frame(frames[0]).map_err(RunError::recording(path))?;
+    let names: &[&str] =
+        if first.obstacles.is_empty() { &["frame"] } else { &["frame", "obstacles"] };
+    let files = NumberedFiles::prepare(folder, names, format.extension(), &frames, overwrite)?;
     for (k, &index) in frames.iter().enumerate() {
         let frame = recording.frame(index).map_err(RunError::recording(path))?;
-        files.write(index, |out| format.write(out, &frame.garments))?;
+        files.write(names[0], index, |out| format.write(out, &frame.garments))?;
+        if let Some(name) = names.get(1) {
+            files.write(name, index, |out| format.write_obstacles(out, &frame.obstacles))?;
+        }
         each(k + 1, frames.len());
     }
-    Ok(Written { files: frames.len(), status: recording.status() })
+    Ok(Written { files: names.len() * frames.len(), status: recording.status() })
 }
 
 /// The frames of `range` that a recording has.
@@ -104,17 +126,23 @@ pub(crate) fn selected(
 /// Refuses numbers that other programs cannot read.
 fn check_finite(garments: &[OwnedGarment]) -> io::Result<()> {
     for OwnedGarment { name, points, material, .. } in garments {
-        let bad = |what: &str, k: usize| {
-            let text = format!("garment {name:?}: {what} {k} is not finite");
-            Err(io::Error::new(io::ErrorKind::InvalidInput, text))
-        };
-        if let Some(k) = points.iter().position(|x| !x.iter().all(|c| c.is_finite())) {
-            return bad("the position of point", k);
-        }
+        check_points("garment", name, points)?;
         let broken = |u: &[[f64; 2]; 3]| !u.as_flattened().iter().all(|c| c.is_finite());
         if let Some(k) = material.iter().position(broken) {
-            return bad("a material coordinate of triangle", k);
+            let what = format!("garment {name:?}: a material coordinate of triangle {k}");
+            return Err(not_finite(&what));
         }
     }
     Ok(())
+}
+
+fn check_points(kind: &str, name: &str, points: &[[f64; 3]]) -> io::Result<()> {
+    match points.iter().position(|x| !x.iter().all(|c| c.is_finite())) {
+        Some(k) => Err(not_finite(&format!("{kind} {name:?}: the position of point {k}"))),
+        None => Ok(()),
+    }
+}
+
+fn not_finite(what: &str) -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, format!("{what} is not finite"))
 }

@@ -80,6 +80,7 @@ pub mod export;
 pub mod fabric;
 pub mod handles;
 pub mod info;
+pub mod obstacle;
 pub mod picture;
 pub mod record;
 pub mod remeshing;

@@ -17,7 +17,7 @@ use io_mcap::{OwnedFrame, Recording};
 use crate::export::{NumberedFiles, Written, selected};
 use crate::record::{FrameRange, RunError, up};
 use crate::render::{
-    Bounds, Image, Layer, RenderError, Size, Style, Surface, Viewpoint, draw_with,
+    Bounds, Image, Layer, Paint, RenderError, Size, Style, Surface, Viewpoint, draw_with,
 };
 
 /// Size of pictures where nothing else is said.
@@ -36,7 +36,7 @@ pub struct PictureOptions {
     pub colouring: Colouring,
 }
 
-/// Draws the garments of a frame.
+/// Draws the garments of a frame, and its obstacles in grey.
 ///
 /// # Errors
 /// See [`crate::render::draw`].
@@ -48,19 +48,17 @@ pub fn draw_frame(
     style: &Style,
 ) -> Result<Image, RenderError> {
     let paints: Vec<_> = frame.garments.iter().map(|g| options.colouring.of(g)).collect();
-    let layers: Vec<Layer<'_>> = frame
-        .garments
-        .iter()
-        .zip(&paints)
-        .map(|(garment, paint)| {
-            Layer::Surface(Surface {
-                points: &garment.points,
-                triangles: &garment.triangles,
-                paint: paint.borrowed(),
-                wireframe: options.wireframe,
-            })
-        })
-        .collect();
+    let garments = frame.garments.iter().zip(&paints).map(|(garment, paint)| Surface {
+        points: &garment.points,
+        triangles: &garment.triangles,
+        paint: paint.borrowed(),
+        wireframe: options.wireframe,
+    });
+    let obstacles = frame.obstacles.iter().map(|obstacle| Surface {
+        paint: Paint::OBSTACLE,
+        ..Surface::new(&obstacle.points, &obstacle.triangles)
+    });
+    let layers: Vec<Layer<'_>> = garments.chain(obstacles).map(Layer::Surface).collect();
     draw_with(&layers, viewpoint, size, style)
 }
 
@@ -94,9 +92,11 @@ pub fn render(
         // Only now: what cannot be drawn leaves no folder behind.
         let files = match &files {
             Some(files) => files,
-            None => files.insert(NumberedFiles::prepare(folder, "png", &frames, overwrite)?),
+            None => {
+                files.insert(NumberedFiles::prepare(folder, &["frame"], "png", &frames, overwrite)?)
+            }
         };
-        files.write(index, |out| out.write_all(&png))?;
+        files.write("frame", index, |out| out.write_all(&png))?;
         each(k + 1, frames.len());
     }
     Ok(Written { files: frames.len(), status: recording.status() })
@@ -119,7 +119,7 @@ pub fn write_poster(path: &Path, poster: &Path) -> Result<(), PictureError> {
     let last = frames.last().copied().unwrap_or_default();
     let frame = recording.frame(last).map_err(RunError::recording(path))?;
     let options = PictureOptions::default();
-    let points = || frame.garments.iter().flat_map(|g| g.points.iter().copied());
+    let points = || points(&frame);
     let style = Style { floor: Bounds::of(points()).lowest(up), ..Style::default() };
     let (viewpoint, size) = viewpoint(&frame, points(), up, &options)
         .ok_or_else(|| PictureError::NoCamera { path: path.to_owned(), frame: last })?;
@@ -132,7 +132,14 @@ fn bounds(recording: &mut Recording<File>, path: &Path) -> Result<Bounds, RunErr
     let indices: Vec<u64> = recording.frames().map(|frame| frame.index).collect();
     for index in indices {
         let frame = recording.frame(index).map_err(RunError::recording(path))?;
-        bounds.extend(frame.garments.iter().flat_map(|g| g.points.iter().copied()));
+        bounds.extend(points(&frame));
     }
     Ok(bounds)
+}
+
+/// All points that a picture of a frame shows.
+fn points(frame: &OwnedFrame) -> impl Iterator<Item = [f64; 3]> + Clone + '_ {
+    let garments = frame.garments.iter().map(|garment| &garment.points);
+    let obstacles = frame.obstacles.iter().map(|obstacle| &obstacle.points);
+    garments.chain(obstacles).flatten().copied()
 }

@@ -24,6 +24,7 @@
 mod camera;
 mod error;
 mod garments;
+mod obstacles;
 mod range;
 mod resume;
 mod settings;
@@ -31,6 +32,7 @@ mod settings;
 pub use camera::camera;
 pub use error::{RunError, place};
 pub use garments::{PALETTE, garments};
+pub use obstacles::obstacles;
 pub use range::{FrameRange, RangeError};
 pub use resume::{Resumed, resume, resume_with};
 pub use settings::Settings;
@@ -38,7 +40,7 @@ pub(crate) use settings::up;
 
 use std::path::{Path, PathBuf};
 
-use io_mcap::{Camera, Frame, Garment, Header, Overwrite, Recorder, RecordingFile};
+use io_mcap::{Camera, Frame, Garment, Header, Obstacle, Overwrite, Recorder, RecordingFile};
 
 use crate::build::BuildError;
 use crate::checkpoint;
@@ -225,10 +227,13 @@ impl Run {
         })?;
         let garments = garments(&self.world);
         let borrowed: Vec<Garment<'_>> = garments.iter().map(|g| g.borrowed()).collect();
+        let obstacles = obstacles(&self.world);
+        let obstacles: Vec<Obstacle<'_>> = obstacles.iter().map(|o| o.borrowed()).collect();
         let frame = Frame {
             index: self.world.frame,
             time_s: self.world.time(),
             garments: &borrowed,
+            obstacles: &obstacles,
             camera: self.camera,
             transforms: &[],
             report: &report,

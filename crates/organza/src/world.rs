@@ -4,11 +4,13 @@
 mod tests;
 
 use crate::build::{BuildError, Built, Garment, build};
+use crate::contact::ContactSettings;
 use crate::handles::{Handles, by_name};
+use crate::obstacle::Obstacle;
 use crate::remeshing::Remeshing;
 use crate::report::{FrameReport, Seconds, StretchRange};
-use crate::scene::Loaded;
 use crate::scene::format::{Integrator, LinearSolver as Method};
+use crate::scene::{Dialect, Loaded};
 use cloth_dynamics::solver::{LinearSettings, LinearSolver, PatternError, SolverKind};
 use cloth_dynamics::{
     Environment, Fabric, ImplicitEuler, NewtonSettings, Sdirk2, SolveError, SolveReport, Step,
@@ -67,6 +69,10 @@ pub struct World {
     pub handles: Handles,
     /// Which panels belong to which cloth of the scene.
     pub garments: Vec<Garment>,
+    /// Bodies that cloth cannot pass.
+    pub obstacles: Vec<Obstacle>,
+    /// How things touch; absent where nothing does.
+    pub contact: Option<ContactSettings>,
     /// What the user should know about how the scene was built.
     pub warnings: Vec<String>,
     fabrics: Arc<Vec<Fabric>>,
@@ -104,7 +110,19 @@ impl World {
     /// # Errors
     /// See [`BuildError`].
     pub fn new(loaded: &Loaded) -> Result<World, BuildError> {
-        let Built { cloth, fabrics, garments, handles, warnings } = build(loaded)?;
+        let mut world = World::without_contact(loaded)?;
+        world.warnings.extend(contact_is_missing(loaded)?);
+        Ok(world)
+    }
+
+    /// As [`World::new`], also of a scene whose contacts are not simulated: cloth passes through
+    /// everything.
+    ///
+    /// # Errors
+    /// See [`BuildError`].
+    pub fn without_contact(loaded: &Loaded) -> Result<World, BuildError> {
+        let built = build(loaded)?;
+        let Built { cloth, fabrics, garments, handles, obstacles, contact, warnings } = built;
         let scene = &loaded.scene;
         let settings =
             LinearSettings { tolerance: scene.linear_tolerance, ..LinearSettings::default() };
@@ -129,6 +147,8 @@ impl World {
             cloth,
             handles,
             garments,
+            obstacles,
+            contact,
             warnings,
             fabrics: Arc::new(fabrics),
             environment: Environment { gravity: World3::from(scene.gravity), wind },
@@ -293,6 +313,25 @@ impl World {
         note(!limits, "strain limits: none in the scene");
         note(self.fabrics.iter().all(|f| f.bending.is_none()), "bending: no fabric resists it");
         note(self.handles.list().is_empty(), "handles: none in the scene");
+        note(self.contact.is_none(), "contact: none in the scene");
         skipped
+    }
+}
+
+/// What is lost because contact is not simulated yet: an error for a scene that asks for it, a
+/// warning for one of ARCSim, which always has it, without obstacles.
+///
+/// # Errors
+/// [`BuildError::NoContact`].
+pub fn contact_is_missing(loaded: &Loaded) -> Result<Option<String>, BuildError> {
+    let scene = &loaded.scene;
+    match (&scene.contact, loaded.dialect) {
+        (None, _) => Ok(None),
+        _ if !scene.obstacles.is_empty() => Err(BuildError::NoContact("the scene has obstacles")),
+        (Some(contact), _) if !contact.self_contact => Ok(None),
+        (_, Dialect::Organza) => Err(BuildError::NoContact("cloth is to touch cloth")),
+        (_, Dialect::Arcsim) => Ok(Some(
+            "ARCSim lets cloth touch itself; self-contact is not simulated in this version".into(),
+        )),
     }
 }

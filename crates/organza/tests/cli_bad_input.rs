@@ -358,6 +358,7 @@ fn what_a_recording_carries() {
             index: 0,
             time_s: 0.0,
             garments: &garments,
+            obstacles: &[],
             camera: None,
             transforms: &[],
             report: &serde_json::json!({"frame": "none"}),

@@ -3,7 +3,7 @@
 use nalgebra::{Point3, Similarity3};
 use organza::fabric::{Fabric, OrthotropicFabric, preset};
 use organza::scene::format::FabricChoice;
-use organza::scene::motion::{AxisAngle, Interpolation, Keyframe, Motion, Transform};
+use organza::scene::motion::{AxisAngle, Interpolation, Keyframe, Motion, Transform, Turning};
 use organza::scene::{LoadOptions, from_sources, parse};
 
 fn turned(degrees: f64) -> Transform {
@@ -16,7 +16,7 @@ fn moved(x: f64) -> Transform {
 
 fn motion(interpolation: Interpolation, keys: &[(f64, Transform)]) -> Motion {
     let keyframes = keys.iter().map(|&(time_s, transform)| Keyframe { time_s, transform });
-    Motion { interpolation, keyframes: keyframes.collect() }
+    Motion { interpolation, turning: Turning::AxisAngle, keyframes: keyframes.collect() }
 }
 
 /// Where a point off all axes goes.

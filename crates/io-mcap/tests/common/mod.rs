@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex};
 
 use io_mcap::{
     Attachment, Camera, Checkpoint, Column, Frame, Header, Limits, OwnedFrame, OwnedGarment,
-    OwnedTransform, Recorder, Recording,
+    OwnedObstacle, OwnedTransform, Recorder, Recording,
 };
 
 /// SplitMix64.
@@ -60,6 +60,17 @@ pub(crate) fn sheet(name: &str, n: usize, seam: bool, random: &mut Random) -> Ow
     }
 }
 
+/// An obstacle that is elsewhere in every frame. Its name may be that of a garment.
+pub(crate) fn tetrahedron(name: &str, index: u64) -> OwnedObstacle {
+    let z = -0.1 * index as f64;
+    OwnedObstacle {
+        name: name.into(),
+        points: vec![[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z], [0.0, -0.0, z + 1.0]],
+        triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+        color: [0.5, 0.5, 0.5, 1.0],
+    }
+}
+
 pub(crate) fn frame(index: u64) -> OwnedFrame {
     let mut random = Random(index);
     let mut garments = vec![
@@ -73,6 +84,7 @@ pub(crate) fn frame(index: u64) -> OwnedFrame {
         index,
         time_s: 0.1 * index as f64,
         garments,
+        obstacles: (0..index.min(2)).map(|k| tetrahedron(&format!("rock-{k}"), index)).collect(),
         camera: (index % 4 != 3).then(|| Camera {
             width_px: 1920,
             height_px: 1080,
@@ -129,11 +141,13 @@ pub(crate) fn header() -> Header {
 /// Lends `frame` to `use_it` as the recorder takes it.
 pub(crate) fn lend<T>(frame: &OwnedFrame, use_it: impl FnOnce(&Frame<'_>) -> T) -> T {
     let garments: Vec<_> = frame.garments.iter().map(|g| g.borrowed()).collect();
+    let obstacles: Vec<_> = frame.obstacles.iter().map(|o| o.borrowed()).collect();
     let transforms: Vec<_> = frame.transforms.iter().map(|t| t.borrowed()).collect();
     use_it(&Frame {
         index: frame.index,
         time_s: frame.time_s,
         garments: &garments,
+        obstacles: &obstacles,
         camera: frame.camera,
         transforms: &transforms,
         report: &frame.report,
@@ -201,6 +215,11 @@ pub(crate) fn frame_bits(frame: &OwnedFrame) -> String {
             )
         })
         .collect();
+    let obstacles: Vec<_> = frame
+        .obstacles
+        .iter()
+        .map(|o| (&o.name, f64s(o.points.as_flattened()), &o.triangles, o.color.map(f32::to_bits)))
+        .collect();
     let camera = frame.camera.map(|c| {
         let numbers = [&c.focal_px[..], &c.center_px, &c.position, &c.rotation].concat();
         (c.width_px, c.height_px, f64s(&numbers))
@@ -211,7 +230,7 @@ pub(crate) fn frame_bits(frame: &OwnedFrame) -> String {
         .map(|t| (&t.name, f64s(&[&t.translation[..], &t.rotation].concat())))
         .collect();
     let (index, time_s, report) = (frame.index, frame.time_s.to_bits(), &frame.report);
-    format!("{index} {time_s} {garments:?} {camera:?} {transforms:?} {report}")
+    format!("{index} {time_s} {garments:?} {obstacles:?} {camera:?} {transforms:?} {report}")
 }
 
 /// Everything in a checkpoint as bits.

@@ -5,6 +5,8 @@
 //! rounding; garments folded from flat panels ([`tunic`], [`poncho`]) state their tolerance.
 
 mod boundary;
+mod capsule;
+mod cuboid;
 mod disc;
 mod error;
 mod grid;
@@ -17,6 +19,8 @@ mod tube;
 mod tunic;
 
 pub use boundary::{boundary_chain, boundary_loops};
+pub use capsule::capsule;
+pub use cuboid::cuboid;
 pub use disc::disc;
 pub use error::GenerateError;
 pub use grid::grid;

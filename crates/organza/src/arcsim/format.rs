@@ -22,12 +22,14 @@ pub(super) struct ArcsimFile {
     pub(super) motions: Vec<Vec<ArcsimKeyframe>>,
     #[serde(default)]
     pub(super) handles: Vec<ArcsimHandle>,
-    pub(super) obstacles: Option<Value>,
+    #[serde(default)]
+    pub(super) obstacles: Vec<ArcsimObstacle>,
     pub(super) morphs: Option<Value>,
     pub(super) gravity: Option<[f64; 3]>,
     pub(super) wind: Option<ArcsimWind>,
-    // Contact is not simulated, so friction changes nothing.
+    /// Of cloth on cloth.
     pub(super) friction: Option<f64>,
+    /// Of cloth on obstacles.
     pub(super) obs_friction: Option<f64>,
     #[serde(default)]
     pub(super) disable: Vec<String>,
@@ -156,7 +158,18 @@ pub(super) struct ArcsimHandle {
     pub(super) axis1: Option<Value>,
 }
 
-/// Constants that ARCSim keeps in one place. Those of contact change nothing here.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArcsimObstacle {
+    pub(super) mesh: String,
+    pub(super) transform: Option<ArcsimTransform>,
+    /// Index into the motions; −1 for none.
+    pub(super) motion: Option<i64>,
+    pub(super) start_time: Option<f64>,
+    pub(super) end_time: Option<f64>,
+}
+
+/// Constants that ARCSim keeps in one place. Of contact, only `repulsion_thickness` is used here.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Magic {

@@ -1,10 +1,9 @@
-//! Handles and motions of ARCSim.
+//! Handles of ARCSim.
 
-use super::cloth::translate_transform;
 use super::format::{ArcsimHandle, ArcsimKeyframe, Magic};
+use super::motion;
 use super::translate::Notes;
 use crate::scene::format::{ClothRef, HandleFile, Select};
-use crate::scene::motion::{Interpolation, Keyframe, Motion};
 use crate::scene::typed::suggestion;
 
 /// Stiffness of ARCSim's handles where the scene names none (N/m).
@@ -35,7 +34,7 @@ pub(super) fn translate(
         if handle.fade_time.is_some_and(|seconds| seconds > 0.0) {
             notes.unsupported(&format!("{theirs}.fade_time"), "handles that fade");
         }
-        let motion = motion(handle, motions, &ours, &theirs, notes);
+        let motion = motion::translate(handle.motion, motions, [&ours, &theirs], notes);
         translated.push(HandleFile {
             cloth: ClothRef::Index(handle.cloth.unwrap_or(0)),
             select: Select::Vertices(nodes),
@@ -72,40 +71,4 @@ fn nodes(handle: &ArcsimHandle, at: &str, notes: &mut Notes) -> Option<Vec<u32>>
             None
         }
     }
-}
-
-fn motion(
-    handle: &ArcsimHandle,
-    motions: &[Vec<ArcsimKeyframe>],
-    ours: &str,
-    theirs: &str,
-    notes: &mut Notes,
-) -> Option<Motion> {
-    let index = handle.motion.filter(|index| *index != -1)?;
-    let index = usize::try_from(index).unwrap_or(usize::MAX);
-    let Some(keyframes) = motions.get(index) else {
-        if notes.has_motion_file {
-            return None;
-        }
-        let n = motions.len();
-        let message = format!("there is no such motion, the scene has {n}");
-        notes.complain(&format!("{theirs}.motion"), message);
-        return None;
-    };
-    let theirs = format!("motions[{index}]");
-    let keyframes = keyframes.iter().enumerate().map(|(k, key)| {
-        let (our_key, their_key) =
-            (format!("{ours}.motion.keyframes[{k}]"), format!("{theirs}[{k}]"));
-        if key.velocity.as_ref().is_some_and(crate::scene::unsupported::asks) {
-            notes.unsupported(&format!("{their_key}.velocity"), "velocities of keyframes");
-        }
-        notes.rename(&format!("{our_key}.time_s"), &format!("{their_key}.time"));
-        notes.rename(&format!("{our_key}.transform"), &format!("{their_key}.transform"));
-        let paths = [format!("{our_key}.transform"), format!("{their_key}.transform")];
-        let transform = translate_transform(key.transform, paths.each_ref().map(|p| &**p), notes);
-        Keyframe { time_s: key.time, transform }
-    });
-    let keyframes = keyframes.collect();
-    notes.rename(&format!("{ours}.motion.keyframes"), &theirs);
-    Some(Motion { interpolation: Interpolation::Smooth, keyframes })
 }

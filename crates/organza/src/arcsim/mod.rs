@@ -10,10 +10,12 @@
 //! | `thicken` | multiplies density, stretching, bending |
 //! | `damping` of a material | Kelvin–Voigt time (s) |
 //! | node handles | springs of 10³ N/m, or `magic.handle_stiffness` |
-//! | `motions` | smooth keyframes, at rest at both ends |
+//! | `motions` | smooth keyframes, at rest at both ends; rotations the shorter way around |
+//! | `obs_friction`, `friction` | friction of obstacles, of cloth on cloth |
+//! | `magic.repulsion_thickness` | thickness of contact |
 //! | `disable` | leaves the part out |
 //!
-//! Plasticity, obstacles, morphs, fracture, handles other than on nodes and the like are collected
+//! Plasticity, morphs, fracture, motion files, obstacles that come and go, handles other than on nodes and the like are collected
 //! as not supported, each with its place. A key `organza`, unknown to ARCSim, may hold `name`,
 //! `integrator`, `newton`, `linear_solver`, `linear_tolerance`, `bending`, `camera` and
 //! `recording` as in the project's own scenes.
@@ -21,6 +23,8 @@
 mod cloth;
 mod format;
 mod handle;
+mod motion;
+mod obstacle;
 mod translate;
 
 pub(crate) use translate::{is_arcsim, read};

@@ -5,6 +5,7 @@ use serde_json::Value;
 use super::cloth;
 use super::format::{ArcsimFile, Magic};
 use super::handle;
+use super::obstacle;
 use crate::scene::format::{Integrator, Newton, SceneFile, Wind};
 use crate::scene::issue::IssueKind;
 use crate::scene::locate::Part;
@@ -61,6 +62,10 @@ impl Notes {
         self.note(IssueKind::Value, path, message);
     }
 
+    pub(super) fn notice(&mut self, path: &str, message: impl Into<String>) {
+        self.note(IssueKind::Notice, path, message);
+    }
+
     fn note(&mut self, kind: IssueKind, path: &str, message: impl Into<String>) {
         let path = ValuePath::parse(path).unwrap_or_default();
         self.complaints.push(Complaint { kind, path, part: Part::Value, message: message.into() });
@@ -93,6 +98,11 @@ pub(crate) fn read(
         notes.unsupported("motions", "motion files");
         value["motions"] = Value::Array(Vec::new());
     }
+    // As may be the name of a file for every frame in the place of the obstacles.
+    if value.get("obstacles").is_some_and(Value::is_string) {
+        notes.unsupported("obstacles", "obstacles by a file for every frame");
+        value["obstacles"] = Value::Array(Vec::new());
+    }
     let arcsim: Option<ArcsimFile> = typed::read(value, complaints);
     let scene = arcsim.and_then(|arcsim| translate(arcsim, &mut notes));
     complaints.append(&mut notes.complaints);
@@ -102,6 +112,7 @@ pub(crate) fn read(
 fn translate(arcsim: ArcsimFile, notes: &mut Notes) -> Option<SceneFile> {
     check_parts(&arcsim, notes);
     let time = time(&arcsim, notes);
+    let (obstacles, contact) = obstacle::translate(&arcsim, notes);
     let extras = arcsim.organza;
     // Still air resists motion too: ARCSim's wind has a density even where none is written.
     let wind = arcsim.wind.as_ref();
@@ -135,6 +146,8 @@ fn translate(arcsim: ArcsimFile, notes: &mut Notes) -> Option<SceneFile> {
         linear_tolerance: extras.linear_tolerance.unwrap_or(1e-3),
         cloths: cloths.into_iter().collect::<Option<_>>()?,
         handles,
+        obstacles,
+        contact,
         camera: extras.camera,
         recording: extras.recording.unwrap_or_default(),
     })
@@ -179,7 +192,7 @@ fn time(arcsim: &ArcsimFile, notes: &mut Notes) -> Option<Time> {
         Some(end) => end,
         None => {
             let message = format!("the scene names no end: {FRAMES_WITHOUT_END} frames are run");
-            notes.note(IssueKind::Notice, "", message);
+            notes.notice("", message);
             (key, f64::from(FRAMES_WITHOUT_END))
         }
     };
@@ -205,19 +218,10 @@ fn check_parts(arcsim: &ArcsimFile, notes: &mut Notes) {
     if notes.is_disabled("physics") {
         notes.unsupported("disable", "a scene without physics");
     }
-    for (key, value, what) in
-        [("obstacles", &arcsim.obstacles, "obstacles"), ("morphs", &arcsim.morphs, "morphs")]
-    {
-        if value.as_ref().is_some_and(asks) {
-            notes.unsupported(key, what);
-        }
+    if arcsim.morphs.as_ref().is_some_and(asks) {
+        notes.unsupported("morphs", "morphs");
     }
     check_magic(&arcsim.magic, notes);
-    if !(notes.is_disabled("collision") && notes.is_disabled("proximity")) {
-        let message =
-            "ARCSim lets cloth touch itself; self-contact is not simulated in this version";
-        notes.note(IssueKind::Notice, "", message);
-    }
 }
 
 fn check_magic(magic: &Magic, notes: &mut Notes) {

@@ -131,7 +131,8 @@ pub(crate) struct Check {
 /// Write frames as mesh files
 ///
 /// One file per frame: frame_00000.obj and so on. OBJ has a group per garment, exact positions, and
-/// material coordinates in metres as texture coordinates; PLY is binary.
+/// material coordinates in metres as texture coordinates; PLY is binary. Obstacles, where the scene
+/// has any, are in a second file per frame: obstacles_00000.obj and so on, a group per obstacle.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:

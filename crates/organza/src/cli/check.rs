@@ -6,7 +6,7 @@ use std::ops::Range;
 use organza::fabric::Fabric;
 use organza::record::{garments, place};
 use organza::scene::{self, Cloth, Dialect, LoadOptions, Loaded};
-use organza::world::World;
+use organza::world::{World, contact_is_missing};
 
 use super::args::Check;
 use super::{Failure, output};
@@ -17,8 +17,11 @@ pub(crate) fn run(args: &Check) -> Result<(), Failure> {
         allow_unsupported: args.scene.allow_unsupported,
     };
     let loaded = scene::load(&args.scene.scene, &load)?;
-    let world = World::new(&loaded).map_err(|error| place(&loaded, &error))?;
+    let world = World::without_contact(&loaded).map_err(|error| place(&loaded, &error))?;
     output::warnings(&loaded.warnings);
+    let missing = contact_is_missing(&loaded);
+    let missing = missing.unwrap_or_else(|error| Some(place(&loaded, &error).to_string()));
+    missing.iter().for_each(|warning| output::warning(warning));
     world.warnings.iter().for_each(|warning| output::warning(warning));
     let mut text = String::new();
     // Writing to a String cannot fail.
@@ -66,6 +69,30 @@ fn write(out: &mut String, loaded: &Loaded, world: &World) -> fmt::Result {
     }
     let held: usize = world.handles.list().iter().map(|handle| handle.held.len()).sum();
     writeln!(out, "handles: {} on {held} vertices", world.handles.list().len())?;
+    for obstacle in &world.obstacles {
+        let moving = if obstacle.is_moving() { "moving" } else { "still" };
+        writeln!(
+            out,
+            "obstacle {}: {} vertices, {} faces, {moving}, friction {}",
+            obstacle.name,
+            obstacle.n_vertices(),
+            obstacle.triangles.len(),
+            obstacle.friction,
+        )?;
+    }
+    match &world.contact {
+        None => writeln!(out, "contact: none")?,
+        Some(contact) => writeln!(
+            out,
+            "contact: thickness {} m; cloth on cloth: {}",
+            contact.thickness,
+            if contact.self_contact {
+                format!("friction {}", contact.friction)
+            } else {
+                "none".into()
+            },
+        )?,
+    }
     let wind = scene.wind.as_ref().map_or("none".into(), |w| format!("{:?} m/s", w.velocity));
     writeln!(out, "wind: {wind}")?;
     writeln!(out, "forces: {}", world.force_names().join(", "))

@@ -47,7 +47,7 @@ pub enum FilesError {
     },
 }
 
-/// Files `frame_00000.EXT`, `frame_00001.EXT`, … of a folder.
+/// Files `NAME_00000.EXT`, `NAME_00001.EXT`, … of a folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NumberedFiles {
     folder: PathBuf,
@@ -55,20 +55,23 @@ pub struct NumberedFiles {
 }
 
 impl NumberedFiles {
-    /// Makes the folder, if it is not there, after a look at all `frames` to be written.
+    /// Makes the folder, if it is not there, after a look at all `frames` to be written, a file of
+    /// each of the `names` for each.
     ///
     /// # Errors
     /// A file exists (unless `overwrite`), or the folder cannot be made; nothing is changed then.
     pub fn prepare(
         folder: &Path,
+        names: &[&str],
         extension: &'static str,
         frames: &[u64],
         overwrite: bool,
     ) -> Result<Self, FilesError> {
         let files = Self { folder: folder.to_owned(), extension };
         if !overwrite {
-            let existing = frames.iter().map(|&k| files.path(k));
-            if let Some(path) = existing.into_iter().find(|p| p.symlink_metadata().is_ok()) {
+            let all = frames.iter().flat_map(|&k| names.iter().map(move |name| (name, k)));
+            let mut paths = all.map(|(name, k)| files.path(name, k));
+            if let Some(path) = paths.find(|p| p.symlink_metadata().is_ok()) {
                 return Err(FilesError::Exists { path });
             }
         }
@@ -78,8 +81,8 @@ impl NumberedFiles {
     }
 
     /// The file of a frame.
-    pub fn path(&self, frame: u64) -> PathBuf {
-        self.folder.join(format!("frame_{frame:05}.{}", self.extension))
+    pub fn path(&self, name: &str, frame: u64) -> PathBuf {
+        self.folder.join(format!("{name}_{frame:05}.{}", self.extension))
     }
 
     /// Writes the file of a frame; one that cannot be written to its end is removed.
@@ -88,10 +91,11 @@ impl NumberedFiles {
     /// See [`FilesError`].
     pub fn write(
         &self,
+        name: &str,
         frame: u64,
         content: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<(), FilesError> {
-        let path = self.path(frame);
+        let path = self.path(name, frame);
         let file = match File::create(&path) {
             Ok(file) => file,
             Err(source) => return Err(FilesError::Create { path, source }),

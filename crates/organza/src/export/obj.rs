@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use io_mcap::OwnedGarment;
+use io_mcap::{OwnedGarment, OwnedObstacle};
 
-use super::check_finite;
+use super::{check_finite, check_points};
 
 /// Writes garments as groups `g NAME` of one OBJ file: positions `v` (m), material coordinates `vt`
 /// (m) for every corner, so that seams survive, and faces `f v/vt`. Numbers are the shortest that
@@ -20,12 +20,7 @@ pub fn write_obj(out: &mut impl Write, garments: &[OwnedGarment]) -> io::Result<
     // OBJ counts from 1, through all groups.
     let (mut first_v, mut first_vt) = (1, 1);
     for OwnedGarment { name, points, triangles, material, .. } in garments {
-        let name: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
-        writeln!(out, "g {name}")?;
-        // Debug, unlike Display, falls back on exponents where plain digits would be many.
-        for [x, y, z] in points {
-            writeln!(out, "v {x:?} {y:?} {z:?}")?;
-        }
+        begin_group(out, name, points)?;
         let mut numbers = BTreeMap::new();
         let mut corners = Vec::with_capacity(3 * material.len());
         for [u, v] in material.as_flattened() {
@@ -44,6 +39,33 @@ pub fn write_obj(out: &mut impl Write, garments: &[OwnedGarment]) -> io::Result<
         first_vt += numbers.len();
     }
     Ok(())
+}
+
+/// Writes obstacles as groups `g NAME` of one OBJ file, with positions `v` (m) and faces `f v`;
+/// numbers and names as those of garments.
+///
+/// # Errors
+/// As for [`write_obj`].
+pub fn write_obstacles_obj(out: &mut impl Write, obstacles: &[OwnedObstacle]) -> io::Result<()> {
+    obstacles.iter().try_for_each(|o| check_points("obstacle", &o.name, &o.points))?;
+    let mut first = 1;
+    for OwnedObstacle { name, points, triangles, .. } in obstacles {
+        begin_group(out, name, points)?;
+        for t in triangles {
+            let [a, b, c] = t.map(|v| first + v as usize);
+            writeln!(out, "f {a} {b} {c}")?;
+        }
+        first += points.len();
+    }
+    Ok(())
+}
+
+/// The name and the positions of a group.
+fn begin_group(out: &mut impl Write, name: &str, points: &[[f64; 3]]) -> io::Result<()> {
+    let name: String = name.chars().map(|c| if is_plain(c) { c } else { '_' }).collect();
+    writeln!(out, "g {name}")?;
+    // Debug, unlike Display, falls back on exponents where plain digits would be many.
+    points.iter().try_for_each(|[x, y, z]| writeln!(out, "v {x:?} {y:?} {z:?}"))
 }
 
 fn is_plain(c: char) -> bool {

@@ -1,10 +1,12 @@
 //! A scene that has passed every check: defaults filled in, names and files resolved.
 
 use super::format::{
-    BendingModel, Camera, Damping, Disc, Grid, Integrator, LinearSolver, Multipliers, Newton,
-    Poncho, Recording, Remeshing, Select, Skirt, Spin, Tube, Tunic, Wind,
+    BendingModel, Camera, Capsule, Cuboid, Damping, Disc, Grid, Integrator, LinearSolver,
+    Multipliers, Newton, Plane, Poncho, Recording, Remeshing, Select, Skirt, Sphere, Spin, Tube,
+    Tunic, Wind,
 };
 use super::motion::{Motion, Transform};
+use crate::contact::ContactSettings;
 use crate::fabric::Fabric;
 
 /// Everything a run needs to know, except the bytes of mesh files.
@@ -34,6 +36,10 @@ pub struct Scene {
     pub cloths: Vec<Cloth>,
     /// What holds or moves them.
     pub handles: Vec<Handle>,
+    /// Bodies that cloth cannot pass.
+    pub obstacles: Vec<Obstacle>,
+    /// How things touch; absent where nothing does.
+    pub contact: Option<ContactSettings>,
     /// The view of pictures.
     pub camera: Option<Camera>,
     /// What is recorded.
@@ -130,4 +136,34 @@ pub struct Handle {
     pub end_s: f64,
     /// Stiffness of the springs (N/m); absent for an exact hold.
     pub stiffness_n_per_m: Option<f64>,
+}
+
+/// A body that cloth cannot pass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Obstacle {
+    /// Name, unique among the obstacles of the scene.
+    pub name: String,
+    /// Where the surface comes from.
+    pub mesh: ObstacleSource,
+    /// Placement.
+    pub transform: Transform,
+    /// How it moves: after its placement, by `motion.at(t)`.
+    pub motion: Option<Motion>,
+    /// Coefficient of friction between it and cloth (1).
+    pub friction: f64,
+}
+
+/// Where the surface of an obstacle comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ObstacleSource {
+    /// A Wavefront OBJ file: a key of the loaded sources.
+    Obj(String),
+    /// A sphere.
+    Sphere(Sphere),
+    /// A box.
+    Cuboid(Cuboid),
+    /// A finite rectangle.
+    Plane(Plane),
+    /// A cylinder with round ends.
+    Capsule(Capsule),
 }

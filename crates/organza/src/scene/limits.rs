@@ -9,6 +9,12 @@ pub const MAX_MESH_BYTES: u64 = 1 << 30;
 pub const MAX_CLOTHS: usize = 10_000;
 /// Handles of a scene.
 pub const MAX_HANDLES: usize = 100_000;
+/// Obstacles of a scene.
+pub const MAX_OBSTACLES: usize = 10_000;
+/// Coefficients of friction (1).
+pub const MAX_FRICTION: f64 = 100.0;
+/// Thickness of contact (m).
+pub const MAX_THICKNESS_M: f64 = 1.0;
 /// Complaints shown of one scene; a file that is no scene at all could have millions.
 pub const MAX_ISSUES: usize = 50;
 /// Characters shown of a message or a path.
@@ -31,7 +37,7 @@ pub const MAX_AIR_DENSITY_KG_PER_M3: f64 = 1e4;
 pub const MAX_FACTOR: f64 = 1e6;
 /// Triangles that a generator makes.
 pub const MAX_TRIANGLES: f64 = mesh_core::generate::MAX_TRIANGLES as f64;
-/// Triangles of all cloths together: several gigabytes of mesh and matrix.
+/// Triangles of all cloths together, and of all obstacles: several gigabytes of mesh and matrix.
 pub const MAX_SCENE_TRIANGLES: usize = 4 * mesh_core::generate::MAX_TRIANGLES;
 /// Smallest length of a generated mesh (m).
 pub const MIN_SIZE_M: f64 = mesh_core::generate::MIN_SIZE;

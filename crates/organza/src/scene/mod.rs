@@ -30,7 +30,7 @@ pub(crate) mod text;
 pub(crate) mod typed;
 pub(crate) mod unsupported;
 
-pub use data::{Cloth, Handle, MeshSource, Scene};
+pub use data::{Cloth, Handle, MeshSource, Obstacle, ObstacleSource, Scene};
 pub use files::{Dialect, FileRequest, Resolver, Source, from_disk, from_sources};
 pub use issue::{Issue, IssueKind, Origin, Position, SceneErrors};
 pub use path::{PathError, Segment, ValuePath};

@@ -1,8 +1,9 @@
 //! Transforms, and their interpolation over time.
 
-use nalgebra::{Similarity3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, Similarity3, Translation3, UnitQuaternion, Vector3, Vector4};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Scales, then rotates about the origin, then translates.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -45,7 +46,7 @@ impl Transform {
     /// The transform as a map of points: `similarity() * point` (m).
     #[must_use]
     pub fn similarity(&self) -> Similarity3<f64> {
-        Pose::of(self).similarity()
+        Pose::of(self, Turning::AxisAngle).similarity(Turning::AxisAngle)
     }
 }
 
@@ -56,6 +57,9 @@ pub struct Motion {
     /// How the time between keyframes is filled.
     #[serde(default)]
     pub interpolation: Interpolation,
+    /// Which way rotations go from keyframe to keyframe.
+    #[serde(default)]
+    pub turning: Turning,
     /// Transforms at increasing times. Before the first and after the last nothing moves.
     #[schemars(length(min = 1))]
     pub keyframes: Vec<Keyframe>,
@@ -72,6 +76,18 @@ pub enum Interpolation {
     Smooth,
 }
 
+/// Which way rotations go from keyframe to keyframe.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Turning {
+    /// Axis times angle is interpolated, so that a fixed axis allows any number of turns.
+    #[default]
+    AxisAngle,
+    /// Unit quaternions are interpolated the shorter way around: never more than half a turn from
+    /// keyframe to keyframe.
+    Shortest,
+}
+
 /// A transform at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -84,8 +100,8 @@ pub struct Keyframe {
 }
 
 impl Motion {
-    /// The transform at time `t` (s). Rotations are interpolated as rotation vectors, so a fixed
-    /// axis allows any number of turns.
+    /// The transform at time `t` (s): that of the first keyframe before it, of the last after it.
+    /// Smooth motions have continuous velocities everywhere; accelerations jump at keyframes.
     ///
     /// A handle that takes hold at t₀ moves its points by `at(t) * at(t0).inverse()`.
     #[must_use]
@@ -99,51 +115,80 @@ impl Motion {
         };
         let span = next.time_s - keys[before].time_s;
         let s = (t - keys[before].time_s) / span;
-        let (a, b) = (Pose::of(&keys[before].transform), Pose::of(&next.transform));
-        match self.interpolation {
-            Interpolation::Linear => Pose::blend([(1.0 - s, &a), (s, &b)]).similarity(),
+        let first = before.saturating_sub(1);
+        let poses = self.poses(first..keys.len().min(after + 2));
+        let (a, b) = (&poses[before - first], &poses[after - first]);
+        let pose = match self.interpolation {
+            Interpolation::Linear => Pose::blend([(1.0 - s, a), (s, b)]),
             Interpolation::Smooth => {
-                let (va, vb) = (self.rate(before), self.rate(after));
+                let (va, vb) = (self.rate(&poses, first, before), self.rate(&poses, first, after));
                 let (s2, s3) = (s * s, s * s * s);
                 Pose::blend([
-                    (2.0 * s3 - 3.0 * s2 + 1.0, &a),
+                    (2.0 * s3 - 3.0 * s2 + 1.0, a),
                     (span * (s3 - 2.0 * s2 + s), &va),
-                    (3.0 * s2 - 2.0 * s3, &b),
+                    (3.0 * s2 - 2.0 * s3, b),
                     (span * (s3 - s2), &vb),
                 ])
-                .similarity()
             }
-        }
+        };
+        pose.similarity(self.turning)
     }
 
-    /// Rate of change at a keyframe (1/s times the pose): the slope between its neighbours, zero
-    /// at both ends.
-    fn rate(&self, at: usize) -> Pose {
+    /// Whether the transform changes at all.
+    #[must_use]
+    pub fn is_moving(&self) -> bool {
+        self.keyframes.windows(2).any(|pair| pair[0].transform != pair[1].transform)
+    }
+
+    /// The poses of some keyframes. A quaternion and its negative are one rotation: each is the one
+    /// that is nearer to its predecessor.
+    fn poses(&self, keys: Range<usize>) -> Vec<Pose> {
+        let mut poses: Vec<Pose> = Vec::with_capacity(keys.len());
+        for key in &self.keyframes[keys] {
+            let mut pose = Pose::of(&key.transform, self.turning);
+            if self.turning == Turning::Shortest
+                && poses.last().is_some_and(|last| last.turn.dot(&pose.turn) < 0.0)
+            {
+                pose.turn = -pose.turn;
+            }
+            poses.push(pose);
+        }
+        poses
+    }
+
+    /// Rate of change at keyframe `at` (1/s times the pose): the slope between its neighbours, zero
+    /// at both ends. `poses` are those from keyframe `first` on.
+    fn rate(&self, poses: &[Pose], first: usize, at: usize) -> Pose {
         let keys = &self.keyframes;
-        let neighbours = at.checked_sub(1).and_then(|i| keys.get(i)).zip(keys.get(at + 1));
-        neighbours.map_or_else(Pose::zero, |(a, b)| {
-            let per_s = 1.0 / (b.time_s - a.time_s);
-            Pose::blend([(per_s, &Pose::of(&b.transform)), (-per_s, &Pose::of(&a.transform))])
-        })
+        if at == 0 || at + 1 == keys.len() {
+            return Pose::zero();
+        }
+        let per_s = 1.0 / (keys[at + 1].time_s - keys[at - 1].time_s);
+        Pose::blend([(per_s, &poses[at + 1 - first]), (-per_s, &poses[at - 1 - first])])
     }
 }
 
 /// A transform as numbers that can be added.
 struct Pose {
     scale: f64,
-    turn: Vector3<f64>,
+    /// Axis times angle (rad) and 0, or a quaternion x, y, z, w, as [`Turning`] says.
+    turn: Vector4<f64>,
     offset: Vector3<f64>,
 }
 
 impl Pose {
     fn zero() -> Self {
-        Self { scale: 0.0, turn: Vector3::zeros(), offset: Vector3::zeros() }
+        Self { scale: 0.0, turn: Vector4::zeros(), offset: Vector3::zeros() }
     }
 
-    fn of(transform: &Transform) -> Self {
+    fn of(transform: &Transform, turning: Turning) -> Self {
+        let turn = transform.rotate.map_or_else(Vector3::zeros, |r| r.rotation_vector());
         Self {
             scale: transform.scale,
-            turn: transform.rotate.map_or_else(Vector3::zeros, |r| r.rotation_vector()),
+            turn: match turning {
+                Turning::AxisAngle => turn.push(0.0),
+                Turning::Shortest => UnitQuaternion::from_scaled_axis(turn).coords,
+            },
             offset: Vector3::from(transform.translate),
         }
     }
@@ -156,10 +201,13 @@ impl Pose {
         })
     }
 
-    fn similarity(&self) -> Similarity3<f64> {
+    fn similarity(&self, turning: Turning) -> Similarity3<f64> {
         // A cubic between very different scales can undershoot; a scale of zero has no inverse.
         let scale = self.scale.max(1e-9);
-        let turn = UnitQuaternion::from_scaled_axis(self.turn);
+        let turn = match turning {
+            Turning::AxisAngle => UnitQuaternion::from_scaled_axis(self.turn.xyz()),
+            Turning::Shortest => UnitQuaternion::new_normalize(Quaternion::from(self.turn)),
+        };
         Similarity3::from_parts(Translation3::from(self.offset), turn, scale)
     }
 }

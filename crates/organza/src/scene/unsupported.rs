@@ -8,11 +8,7 @@ use super::path::ValuePath;
 use super::typed::Complaint;
 
 /// Keys of the scene, and what they stand for.
-const SCENE: [(&str, &str); 11] = [
-    ("obstacles", "obstacles"),
-    ("contact", "contact"),
-    ("self_contact", "contact of cloth with itself"),
-    ("friction", "friction"),
+const SCENE: [(&str, &str); 7] = [
     ("fluid", "fluids"),
     ("fluids", "fluids"),
     ("cameras", "several cameras"),
@@ -27,8 +23,8 @@ const CLOTH: [(&str, &str); 6] = [
     ("plasticity", "plastic deformation"),
     ("fracture", "fracture"),
     ("tearing", "tearing"),
-    ("self_contact", "contact of cloth with itself"),
-    ("friction", "friction"),
+    ("self_contact", "contact of single cloths; see `contact` of the scene"),
+    ("friction", "friction of single cloths; see `contact` of the scene"),
     ("restraint", "adaptively restrained dynamics"),
 ];
 

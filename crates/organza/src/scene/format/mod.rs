@@ -4,11 +4,13 @@
 mod cloth;
 mod handle;
 mod mesh;
+mod obstacle;
 mod solver;
 
 pub use cloth::*;
 pub use handle::*;
 pub use mesh::*;
+pub use obstacle::*;
 pub use solver::*;
 
 use schemars::JsonSchema;
@@ -60,6 +62,13 @@ pub struct SceneFile {
     /// What holds or moves vertices of the cloths.
     #[serde(default)]
     pub handles: Vec<HandleFile>,
+    /// Bodies that cloth cannot pass.
+    #[serde(default)]
+    pub obstacles: Vec<ObstacleFile>,
+    /// How things touch. Absent means that cloth does not touch cloth, and that obstacles, if there
+    /// are any, are touched with the default numbers.
+    #[serde(default)]
+    pub contact: Option<ContactFile>,
     /// The view of pictures; absent means one that shows everything.
     #[serde(default)]
     pub camera: Option<Camera>,
@@ -133,6 +142,15 @@ mod default {
     }
     pub(super) fn air_density() -> f64 {
         1.2
+    }
+    pub(super) fn friction() -> f64 {
+        0.3
+    }
+    pub(super) fn contact_thickness_m() -> f64 {
+        0.005
+    }
+    pub(super) fn self_contact() -> bool {
+        true
     }
     pub(super) fn vertical_fov_deg() -> f64 {
         40.0

@@ -7,22 +7,6 @@ use super::super::limits::{self, MAX_DENSITY_KG_PER_M2, MAX_STIFFNESS};
 use super::{Context, beyond, mesh};
 use crate::fabric::{Fabric, OrthotropicFabric, preset, read_measured};
 
-/// The names of all cloths, given or made up; names used twice are complained of.
-pub(super) fn names(cloths: &[ClothFile], at: &At<'_>) -> Vec<String> {
-    let mut names: Vec<String> = Vec::with_capacity(cloths.len());
-    for (i, cloth) in cloths.iter().enumerate() {
-        let name = cloth.name.clone().unwrap_or_else(|| format!("cloth{i}"));
-        let at = at.index(i).key("name");
-        if name.is_empty() {
-            at.complain("is empty");
-        } else if let Some(first) = names.iter().position(|other| *other == name) {
-            at.complain(format!("`{name}` is the name of cloths[{first}] already"));
-        }
-        names.push(name);
-    }
-    names
-}
-
 pub(super) fn resolve(
     cloth: ClothFile,
     name: String,

@@ -90,7 +90,7 @@ fn check_select(select: &Select, at: &At<'_>) {
     }
 }
 
-fn check_motion(motion: &Motion, at: &At<'_>) {
+pub(super) fn check_motion(motion: &Motion, at: &At<'_>) {
     let keyframes = at.key("keyframes");
     if motion.keyframes.is_empty() {
         keyframes.complain("a motion needs at least one keyframe");

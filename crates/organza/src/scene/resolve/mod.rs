@@ -3,11 +3,12 @@
 mod cloth;
 mod handle;
 mod mesh;
+mod obstacle;
 
 use super::check::{At, Complaints, beyond};
 use super::data::Scene;
 use super::files::{Dialect, FileRequest, Resolver, Source};
-use super::format::{Camera, SceneFile, Wind};
+use super::format::{Camera, ClothFile, SceneFile, Wind};
 use super::issue::{Issue, IssueKind};
 use super::limits;
 
@@ -67,13 +68,15 @@ pub(super) fn resolve(
     for (key, n, limit) in [
         ("cloths", file.cloths.len(), limits::MAX_CLOTHS),
         ("handles", file.handles.len(), limits::MAX_HANDLES),
+        ("obstacles", file.obstacles.len(), limits::MAX_OBSTACLES),
     ] {
         if n > limit {
             top.key(key).complain(format!("has {n} elements, beyond the limit of {limit}"));
             return None;
         }
     }
-    let names = cloth::names(&file.cloths, &top.key("cloths"));
+    let given = |cloth: &ClothFile| cloth.name.clone();
+    let names = names(&file.cloths, given, "cloth", &top.key("cloths"));
     let handles = handle::resolve(file.handles, &names, &top.key("handles"));
     let cloths: Option<Vec<_>> = {
         let resolved: Vec<_> = file
@@ -87,6 +90,8 @@ pub(super) fn resolve(
             .collect();
         resolved.into_iter().collect()
     };
+    let contact = obstacle::contact(file.contact, !file.obstacles.is_empty(), &top.key("contact"));
+    let obstacles = obstacle::resolve(file.obstacles, &top.key("obstacles"), context);
     let scene = Scene {
         name: file.name.unwrap_or_else(|| default_name.to_owned()),
         frames: file.frames,
@@ -100,6 +105,8 @@ pub(super) fn resolve(
         linear_tolerance: file.linear_tolerance,
         cloths: cloths?,
         handles: handles?,
+        obstacles: obstacles?,
+        contact,
         camera: file.camera,
         recording: file.recording,
     };
@@ -107,6 +114,27 @@ pub(super) fn resolve(
         check_camera(camera, scene.up(), &top.key("camera"));
     }
     Some(scene)
+}
+
+/// The names of all `things`, given or made up; names used twice are complained of.
+fn names<T>(
+    things: &[T],
+    given: impl Fn(&T) -> Option<String>,
+    kind: &str,
+    at: &At<'_>,
+) -> Vec<String> {
+    let mut names: Vec<String> = Vec::with_capacity(things.len());
+    for (i, thing) in things.iter().enumerate() {
+        let name = given(thing).unwrap_or_else(|| format!("{kind}{i}"));
+        let at = at.index(i).key("name");
+        if name.is_empty() {
+            at.complain("is empty");
+        } else if let Some(first) = names.iter().position(|other| *other == name) {
+            at.complain(format!("`{name}` is the name of {kind}s[{first}] already"));
+        }
+        names.push(name);
+    }
+    names
 }
 
 fn check_time(file: &SceneFile, top: &At<'_>) {
