@@ -1,15 +1,17 @@
 //! Contact of the cloth with itself and with obstacles: what `collision` finds, as the potential and
 //! the bound on steps that the solver wants.
 
+mod candidates;
 mod crossings;
 mod pair;
 mod slip;
 
 use crate::obstacle::Obstacle;
+use candidates::Candidates;
 use cloth_dynamics::Stage;
 use cloth_dynamics::contact::Contact;
 use cloth_dynamics::solver::BlockMatrix;
-use collision::{Body, Bvh, Pair, PairKind, Surface, SurfaceError, ccd, proximity, swept};
+use collision::{Body, Bvh, Pair, Surface, SurfaceError, ccd, swept};
 use mesh_core::{ClothState, World3, par};
 use pair::Sides;
 use slip::Slip;
@@ -74,6 +76,8 @@ const RADIUS_OF_HEIGHT: f64 = 0.2;
 /// Share of the thickness that is far more than the rounding of a distance: what keeps it needs no
 /// continuous test.
 const CLEAR: f64 = 0.1;
+/// Share of the thickness by which things may come nearer before candidates are sought anew.
+const SKIN: f64 = 0.5;
 /// Speed below which things stick (m/s).
 const STICK: f64 = 1e-3;
 
@@ -85,10 +89,12 @@ pub struct SurfaceContact {
     radius: Vec<f64>,
     cloth_tree: Bvh,
     obstacles: Option<Moving>,
-    /// Pairs on the way that was last looked at: within the cloth, then with obstacles.
-    near: [Vec<Pair>; 2],
+    /// All that may matter for a while.
+    candidates: Candidates,
+    /// Pairs that may come near on the way that was last looked at.
+    near: Vec<Sides>,
     /// Those with obstacles that do touch on it.
-    in_the_way: Vec<Pair>,
+    in_the_way: Vec<Sides>,
     slips: Vec<Slip>,
     /// Mass over h² by vertex (N/m).
     inertia: Vec<f64>,
@@ -128,7 +134,8 @@ impl SurfaceContact {
             radius,
             cloth_tree,
             obstacles,
-            near: [Vec::new(), Vec::new()],
+            candidates: Candidates::default(),
+            near: Vec::new(),
             in_the_way: Vec::new(),
             slips: Vec::new(),
             inertia: Vec::new(),
@@ -177,53 +184,107 @@ impl SurfaceContact {
         STIFFNESS * cloth.clone().map(of).sum::<f64>() / cloth.count() as f64
     }
 
-    /// All pairs of both sets.
-    fn pairs(&self) -> impl Iterator<Item = (usize, Pair)> {
-        let sets = self.near.iter().enumerate();
-        sets.flat_map(|(set, pairs)| pairs.iter().map(move |pair| (set, *pair)))
+    /// What holds things back that touch at the start of a stage, at `x`.
+    fn find_slips(&mut self, stage: &Stage<'_>, times: [f64; 2]) {
+        self.slips.clear();
+        let moving = self.obstacles.as_ref();
+        let slides = moving.is_some_and(|m| m.fixed.friction.iter().any(|&mu| mu > 0.0));
+        if self.settings.friction == 0.0 && !slides {
+            return;
+        }
+        let before = moving.map(|moving| (moving.fixed.motion)(times[1] - stage.h));
+        for sides in &self.near {
+            let closest = sides.closest(&self.corners(sides, stage.x_t0));
+            let [_, slope, _] =
+                cloth_dynamics::contact::barrier(closest.distance, self.thickness(sides));
+            let (mut mu, mut way) = (self.settings.friction, World3::zeros());
+            if let (Some(moving), Some(before), true) = (moving, &before, !sides.is_within_cloth())
+            {
+                mu = 0.0;
+                for k in (0..4).filter(|&k| !sides.is_cloth[k]) {
+                    let i = sides.vertices[k] as usize;
+                    mu = f64::max(mu, moving.fixed.friction[i]);
+                    way += (moving.then[i] - before[i]) * closest.weights[k];
+                }
+            }
+            let most = -slope * self.stiffness(sides) * mu;
+            self.slips.extend(Slip::new(*sides, &closest, most, way, STICK * stage.h));
+        }
     }
 
-    /// What holds things back that touch at the start of a stage.
-    fn find_slips(&mut self, x: &[World3], times: [f64; 2], h: f64) {
-        self.slips.clear();
-        let radius = |v: u32| self.radius[v as usize];
-        let body = Body::still(&self.cloth, x, &radius);
-        let mut found = Vec::new();
-        if self.settings.self_contact && self.settings.friction > 0.0 {
-            body.update_tree(&mut self.cloth_tree);
-            let touching = proximity::within(body, &self.cloth_tree);
-            found.extend(
-                touching.into_iter().map(|p| (0, p, self.settings.friction, World3::zeros())),
-            );
+    /// Looks at the way as [`Contact::look_ahead`] does.
+    fn look(&mut self, x: &[World3], x_t1: &[World3]) -> f64 {
+        let (now, then): (&[World3], &[World3]) =
+            self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then));
+        if !self.candidates.are_complete([x, x_t1], [now, then]) {
+            self.search(x, x_t1);
         }
-        if let Some(moving) = &mut self.obstacles
-            && moving.fixed.friction.iter().any(|&mu| mu > 0.0)
-        {
-            body.update_tree(&mut self.cloth_tree);
-            let half = 0.5 * self.settings.thickness;
-            let room = |_: u32| half;
-            let other = Body::still(&moving.fixed.surface, &moving.now, &room);
-            other.update_tree(&mut moving.tree);
-            let before = (moving.fixed.motion)(times[1] - h);
-            for p in proximity::between((body, &self.cloth_tree), (other, &moving.tree)) {
-                let vertices = p.vertices(&self.cloth, &moving.fixed.surface);
-                let is_first = p.pair.of_first();
-                let theirs = (0..4).filter(|&k| !is_first[k]);
-                let (mut mu, mut way) = (0.0, World3::zeros());
-                for k in theirs {
-                    let i = vertices[k] as usize;
-                    mu = f64::max(mu, moving.fixed.friction[i]);
-                    way += (moving.then[i] - before[i]) * p.weights[k];
-                }
-                found.push((1, p, mu, way));
+        let (now, then): (&[World3], &[World3]) =
+            self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then));
+        let Candidates { pairs: found, start, .. } = &self.candidates;
+        let mut free = vec![None; found.len()];
+        par::fill(&mut free, |k| {
+            let (sides, distance) = &found[k];
+            let thickness = self.thickness(sides);
+            let at_start = self.corners_at(sides, &start[0], &start[1]);
+            let x_t0 = self.corners_at(sides, x, now);
+            let x_t1 = self.corners_at(sides, x_t1, then);
+            let nearer = sides.relative_motion(&at_start, &x_t0);
+            if distance - nearer.max(sides.relative_motion(&at_start, &x_t1)) > thickness {
+                return None;
             }
+            let left = sides.closest(&x_t0).distance - sides.relative_motion(&x_t0, &x_t1);
+            if left > thickness {
+                None
+            } else if left > CLEAR * thickness {
+                Some(1.0)
+            } else if sides.is_edges {
+                Some(ccd::edge_edge(&x_t0, &x_t1, 0.0).free_until())
+            } else {
+                Some(ccd::vertex_triangle(&x_t0, &x_t1, 0.0).free_until())
+            }
+        });
+        let kept =
+            found.iter().zip(&free).filter_map(|((sides, _), free)| free.map(|t| (*sides, t)));
+        let kept: Vec<(Sides, f64)> = kept.collect();
+        self.near = kept.iter().map(|(sides, _)| *sides).collect();
+        let hits = kept.iter().filter(|(sides, t)| *t < 1.0 && !sides.is_within_cloth());
+        self.in_the_way = hits.map(|(sides, _)| *sides).collect();
+        kept.into_iter().map(|(_, t)| t).fold(1.0, f64::min)
+    }
+
+    /// Finds candidates anew, for this way and for what is near it.
+    fn search(&mut self, x: &[World3], x_t1: &[World3]) {
+        let skin = SKIN * self.settings.thickness;
+        let radius = |v: u32| self.radius[v as usize] + 0.5 * skin;
+        let body = Body::moving(&self.cloth, x, x_t1, &radius);
+        body.update_tree(&mut self.cloth_tree);
+        let mut found: Vec<(usize, Pair)> = Vec::new();
+        if self.settings.self_contact {
+            let pairs = swept::candidates_within(body, &self.cloth_tree);
+            found.extend(pairs.into_iter().map(|pair| (0, pair)));
         }
-        for (set, p, mu, way) in found {
-            let sides = self.sides(set, p.pair);
-            let [_, slope, _] = cloth_dynamics::contact::barrier(p.distance, p.thickness);
-            let force = -slope * self.stiffness(&sides);
-            self.slips.extend(Slip::new(sides, &p, mu * force, way, STICK * h));
+        if let Some(moving) = &mut self.obstacles {
+            let half = 0.5 * (self.settings.thickness + skin);
+            let room = |_: u32| half;
+            let other = Body::moving(&moving.fixed.surface, &moving.now, &moving.then, &room);
+            other.update_tree(&mut moving.tree);
+            let pairs = swept::candidates_between((body, &self.cloth_tree), (other, &moving.tree));
+            found.extend(pairs.into_iter().map(|pair| (1, pair)));
         }
+        let (now, then): (&[World3], &[World3]) =
+            self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then));
+        let mut pairs = vec![None; found.len()];
+        par::fill(&mut pairs, |k| {
+            let sides = self.sides(found[k].0, found[k].1);
+            let x_t0 = self.corners_at(&sides, x, now);
+            let x_t1 = self.corners_at(&sides, x_t1, then);
+            let distance = sides.closest(&x_t0).distance;
+            let left = distance - sides.relative_motion(&x_t0, &x_t1);
+            (left <= self.thickness(&sides) + skin).then_some((sides, distance))
+        });
+        let pairs = pairs.into_iter().flatten().collect();
+        self.candidates = Candidates::new(pairs, skin, [x, x_t1], [now, then]);
     }
 }
 
@@ -256,7 +317,8 @@ impl Contact for SurfaceContact {
             moving.now = (moving.fixed.motion)(times[0]);
             moving.then = (moving.fixed.motion)(times[1]);
         }
-        self.find_slips(stage.x_t0, times, stage.h);
+        self.look(stage.x_t0, stage.x_t0);
+        self.find_slips(&stage, times);
         for slip in &mut self.slips {
             slip.set_base(stage.base);
         }
@@ -264,67 +326,14 @@ impl Contact for SurfaceContact {
 
     fn look_ahead(&mut self, x: &[World3], step: &[World3]) -> f64 {
         let x_t1: Vec<World3> = x.iter().zip(step).map(|(x, d)| x + d).collect();
-        let radius = |v: u32| self.radius[v as usize];
-        let body = Body::moving(&self.cloth, x, &x_t1, &radius);
-        body.update_tree(&mut self.cloth_tree);
-        self.near[0] = if self.settings.self_contact {
-            swept::candidates_within(body, &self.cloth_tree)
-        } else {
-            Vec::new()
-        };
-        if let Some(moving) = &mut self.obstacles {
-            let half = 0.5 * self.settings.thickness;
-            let room = |_: u32| half;
-            let other = Body::moving(&moving.fixed.surface, &moving.now, &moving.then, &room);
-            other.update_tree(&mut moving.tree);
-            self.near[1] =
-                swept::candidates_between((body, &self.cloth_tree), (other, &moving.tree));
-        }
-        // How near the things of a pair may come: nearer than now by no more than they move.
-        let pairs: Vec<(usize, Pair)> = self.pairs().collect();
-        let (now, then): (&[World3], &[World3]) =
-            self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then));
-        let mut free = vec![None; pairs.len()];
-        par::fill(&mut free, |k| {
-            let (set, pair) = pairs[k];
-            let sides = self.sides(set, pair);
-            let x_t0 = self.corners_at(&sides, x, now);
-            let x_t1 = self.corners_at(&sides, &x_t1, then);
-            let moved = |k: usize| (x_t1[k] - x_t0[k]).norm();
-            let most =
-                |side| (0..4).filter(|&k| sides.is_first[k] == side).map(moved).fold(0.0, f64::max);
-            let left = sides.closest(&x_t0).distance - most(true) - most(false);
-            let thickness = self.thickness(&sides);
-            if left > thickness {
-                None
-            } else if left > CLEAR * thickness {
-                Some(1.0)
-            } else if pair.kind == PairKind::EdgeEdge {
-                Some(ccd::edge_edge(&x_t0, &x_t1, 0.0).free_until())
-            } else {
-                Some(ccd::vertex_triangle(&x_t0, &x_t1, 0.0).free_until())
-            }
-        });
-        let near = |which: usize| {
-            let found = pairs.iter().zip(&free);
-            let kept = found.filter(|((set, _), free)| *set == which && free.is_some());
-            kept.map(|((_, pair), _)| *pair).collect()
-        };
-        self.near = [near(0), near(1)];
-        let hits = pairs
-            .iter()
-            .zip(&free)
-            .filter(|((set, _), free)| *set == 1 && free.is_some_and(|t| t < 1.0));
-        self.in_the_way = hits.map(|((_, pair), _)| *pair).collect();
-        free.into_iter().flatten().fold(1.0, f64::min)
+        self.look(x, &x_t1)
     }
 
     fn carry(&self, x: &[World3], step: &mut [World3]) -> bool {
         let Some(moving) = &self.obstacles else { return false };
         let mut carried: Vec<Option<World3>> = vec![None; x.len()];
-        for pair in &self.in_the_way {
-            let sides = self.sides(1, *pair);
-            let weights = sides.closest(&self.corners(&sides, x)).weights;
+        for sides in &self.in_the_way {
+            let weights = sides.closest(&self.corners(sides, x)).weights;
             let theirs = (0..4).filter(|&k| !sides.is_cloth[k]);
             let way = |k: usize| {
                 let i = sides.vertices[k] as usize;
@@ -365,27 +374,23 @@ impl Contact for SurfaceContact {
     }
 
     fn energy(&self, x: &[World3]) -> f64 {
-        let n = self.near[0].len();
         let pair = |k: usize| {
-            let (set, pair) = if k < n { (0, self.near[0][k]) } else { (1, self.near[1][k - n]) };
-            let sides = self.sides(set, pair);
-            let closest = sides.closest(&self.corners(&sides, x));
-            let [energy, ..] =
-                cloth_dynamics::contact::barrier(closest.distance, self.thickness(&sides));
-            if energy == 0.0 { 0.0 } else { energy * self.stiffness(&sides) }
+            let sides = &self.near[k];
+            let distance = sides.closest(&self.corners(sides, x)).distance;
+            let [energy, ..] = cloth_dynamics::contact::barrier(distance, self.thickness(sides));
+            if energy == 0.0 { 0.0 } else { energy * self.stiffness(sides) }
         };
-        let repulsion = par::sum(n + self.near[1].len(), pair);
+        let repulsion = par::sum(self.near.len(), pair);
         repulsion + self.slips.iter().map(|slip| slip.energy(x)).sum::<f64>()
     }
 
     fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {
-        for (set, pair) in self.pairs() {
-            let sides = self.sides(set, pair);
-            let closest = sides.closest(&self.corners(&sides, x));
+        for sides in &self.near {
+            let closest = sides.closest(&self.corners(sides, x));
             let [_, slope, curvature] =
-                cloth_dynamics::contact::barrier(closest.distance, self.thickness(&sides));
+                cloth_dynamics::contact::barrier(closest.distance, self.thickness(sides));
             if slope < 0.0 {
-                let k = self.stiffness(&sides);
+                let k = self.stiffness(sides);
                 let normal = closest.offset / closest.distance;
                 sides.add_gradient(&closest.weights, &(normal * (slope * k)), gradient);
                 // The distance is nearly linear, and what is left of its Hessian is not positive.

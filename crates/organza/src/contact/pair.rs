@@ -14,7 +14,7 @@ pub(super) struct Sides {
     pub(super) is_first: [bool; 4],
     /// Which are the cloth's.
     pub(super) is_cloth: [bool; 4],
-    is_edges: bool,
+    pub(super) is_edges: bool,
 }
 
 /// The closest points of a pair.
@@ -35,6 +35,23 @@ impl Sides {
             is_cloth: of_first.map(|is_first| within_cloth || is_first),
             is_edges,
         }
+    }
+
+    pub(super) fn is_within_cloth(&self) -> bool {
+        self.is_cloth == [true; 4]
+    }
+
+    /// The most by which the distance can change on the way (m): the points of one feature move by
+    /// no more than this against those of the other.
+    pub(super) fn relative_motion(&self, x_t0: &[World3; 4], x_t1: &[World3; 4]) -> f64 {
+        let motion: [World3; 4] = std::array::from_fn(|k| x_t1[k] - x_t0[k]);
+        let mut most: f64 = 0.0;
+        for a in (0..4).filter(|&k| self.is_first[k]) {
+            for b in (0..4).filter(|&k| !self.is_first[k]) {
+                most = most.max((motion[a] - motion[b]).norm_squared());
+            }
+        }
+        most.sqrt()
     }
 
     pub(super) fn closest(&self, x: &[World3; 4]) -> ClosestPoints {
@@ -63,7 +80,7 @@ impl Sides {
         stiffness: &Matrix3<f64>,
         to: &mut BlockMatrix,
     ) {
-        let factor = if self.is_cloth == [true; 4] { 2.0 } else { 1.0 };
+        let factor = if self.is_within_cloth() { 2.0 } else { 1.0 };
         for a in (0..4).filter(|&a| self.is_cloth[a]) {
             for b in (0..=a).filter(|&b| self.is_cloth[b] && self.is_first[a] == self.is_first[b]) {
                 let (i, j) = (self.vertices[a] as usize, self.vertices[b] as usize);

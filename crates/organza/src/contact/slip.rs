@@ -1,10 +1,9 @@
 //! Friction: what touches at the start of a stage resists sliding in the plane of its contact there,
 //! with at most μ times the normal force there (lagged Coulomb friction, Li2020 §5).
 
-use super::pair::Sides;
+use super::pair::{ClosestPoints, Sides};
 use cloth_dynamics::contact::friction;
 use cloth_dynamics::solver::BlockMatrix;
-use collision::proximity::Proximity;
 use mesh_core::World3;
 use nalgebra::Matrix3;
 
@@ -27,16 +26,16 @@ impl Slip {
     /// where there is no friction.
     pub(super) fn new(
         sides: Sides,
-        p: &Proximity,
+        closest: &ClosestPoints,
         most: f64,
         way: World3,
         y_stick: f64,
     ) -> Option<Slip> {
-        let is_some = most > 0.0 && most.is_finite() && p.distance > 0.0;
+        let is_some = most > 0.0 && most.is_finite() && closest.distance > 0.0;
         is_some.then(|| {
-            let normal = p.offset / p.distance;
+            let normal = closest.offset / closest.distance;
             let tangential = Matrix3::identity() - normal * normal.transpose();
-            Slip { sides, weights: p.weights, tangential, most, y_stick, offset: way }
+            Slip { sides, weights: closest.weights, tangential, most, y_stick, offset: way }
         })
     }
 

@@ -1,0 +1,62 @@
+//! Pairs that may touch for a while: sought once, for a way and all that is near it, and asked for as
+//! long as nothing strays far from it.
+
+use super::pair::Sides;
+use mesh_core::{World3, par};
+
+/// Pairs with the way for which they were sought.
+#[derive(Default)]
+pub(super) struct Candidates {
+    /// With their distances at the start of the way (m).
+    pub(super) pairs: Vec<(Sides, f64)>,
+    /// Positions there, of the cloth and of the obstacles (m).
+    pub(super) start: [Vec<World3>; 2],
+    /// The way from there to its end (m).
+    way: [Vec<World3>; 2],
+    /// By how much things may come nearer than on the way (m).
+    skin: f64,
+}
+
+impl Candidates {
+    /// Pairs that are complete for the way of the cloth from `x[0]` to `x[1]` while the obstacles go
+    /// theirs (m), and for all that brings things nearer than on it by no more than `skin` (m).
+    pub(super) fn new(
+        pairs: Vec<(Sides, f64)>,
+        skin: f64,
+        x: [&[World3]; 2],
+        obstacles: [&[World3]; 2],
+    ) -> Candidates {
+        let way = [x, obstacles]
+            .map(|[x_t0, x_t1]| x_t0.iter().zip(x_t1).map(|(from, to)| to - from).collect());
+        Candidates { pairs, start: [x[0].to_vec(), obstacles[0].to_vec()], way, skin }
+    }
+
+    /// Whether nothing is missing for another way.
+    ///
+    /// Each of its ends is compared with the point of the old way that is nearest to it, the same
+    /// share of it for everything: in between, nothing is further off.
+    pub(super) fn are_complete(&self, x: [&[World3]; 2], obstacles: [&[World3]; 2]) -> bool {
+        let same = |k: usize, new: [&[World3]; 2]| self.start[k].len() == new[0].len();
+        let near = |end: usize| {
+            let share = self.share(x[end]);
+            let cloth = self.off(0, x[end], share);
+            cloth + cloth.max(self.off(1, obstacles[end], share)) <= self.skin
+        };
+        same(0, x) && same(1, obstacles) && near(0) && near(1)
+    }
+
+    /// Share of the way that is nearest to positions of the cloth (1).
+    fn share(&self, x: &[World3]) -> f64 {
+        let (start, way) = (&self.start[0], &self.way[0]);
+        let along = par::sum(x.len(), |i| (x[i] - start[i]).dot(&way[i]));
+        let whole = par::sum(x.len(), |i| way[i].norm_squared());
+        if whole > 0.0 { (along / whole).clamp(0.0, 1.0) } else { 0.0 }
+    }
+
+    /// How far positions are off that point of the way at most (m).
+    fn off(&self, set: usize, x: &[World3], share: f64) -> f64 {
+        let points = self.start[set].iter().zip(&self.way[set]);
+        let off = points.zip(x).map(|((from, way), x)| (x - from - way * share).norm_squared());
+        off.fold(0.0, f64::max).sqrt()
+    }
+}
