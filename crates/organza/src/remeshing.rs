@@ -77,7 +77,8 @@ impl Remeshing {
         Remeshing { sizing: Box::new(field(self.sizing)), ..self }
     }
 
-    /// Remeshes; returns what was done and the seconds spent on sizing and on edits.
+    /// Remeshes, by splits alone if the surface is to be kept; returns what was done and the seconds
+    /// spent on sizing and on edits.
     ///
     /// # Errors
     /// If a setting is out of range.
@@ -85,6 +86,7 @@ impl Remeshing {
         &self,
         cloth: &mut ClothState,
         keep: &[u64],
+        keep_surface: bool,
     ) -> Result<(RemeshReport, [f64; 2]), RemeshError> {
         let settings = RemeshSettings {
             aspect_min: self.aspect_min,
@@ -93,6 +95,7 @@ impl Remeshing {
             keep,
             fixed_panels: &self.fixed_panels,
             stretch_limits: &self.stretch_limits,
+            keep_surface,
             obstacle: None,
         };
         let clock = Instant::now();

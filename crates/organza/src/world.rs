@@ -4,7 +4,7 @@
 mod tests;
 
 use crate::build::{BuildError, Built, Garment, build};
-use crate::contact::ContactSettings;
+use crate::contact::{ContactSettings, Crossings, Obstacles, SurfaceContact};
 use crate::handles::{Handles, by_name};
 use crate::obstacle::Obstacle;
 use crate::remeshing::Remeshing;
@@ -16,6 +16,7 @@ use cloth_dynamics::{
     Environment, Fabric, ImplicitEuler, NewtonSettings, Sdirk2, SolveError, SolveReport, Step,
     System, TimeIntegrator, Wind,
 };
+use collision::SurfaceError;
 use mesh_core::{ClothState, World3};
 use remesh::SizingField;
 use std::sync::Arc;
@@ -73,6 +74,8 @@ pub struct World {
     pub obstacles: Vec<Obstacle>,
     /// How things touch; absent where nothing does.
     pub contact: Option<ContactSettings>,
+    /// The obstacles as the contact sees them.
+    bodies: Option<Obstacles>,
     /// What the user should know about how the scene was built.
     pub warnings: Vec<String>,
     fabrics: Arc<Vec<Fabric>>,
@@ -101,6 +104,15 @@ impl std::fmt::Debug for World {
     }
 }
 
+/// The scene has grown beyond what matrices or collision trees can hold.
+#[derive(Debug, thiserror::Error)]
+enum PrepareError {
+    #[error(transparent)]
+    Pattern(#[from] PatternError),
+    #[error(transparent)]
+    Surface(#[from] SurfaceError),
+}
+
 /// How often a failing step is halved before the run ends.
 const MAX_HALVINGS: u32 = 6;
 
@@ -110,19 +122,16 @@ impl World {
     /// # Errors
     /// See [`BuildError`].
     pub fn new(loaded: &Loaded) -> Result<World, BuildError> {
-        let mut world = World::without_contact(loaded)?;
-        world.warnings.extend(contact_is_missing(loaded)?);
-        Ok(world)
-    }
-
-    /// As [`World::new`], also of a scene whose contacts are not simulated: cloth passes through
-    /// everything.
-    ///
-    /// # Errors
-    /// See [`BuildError`].
-    pub fn without_contact(loaded: &Loaded) -> Result<World, BuildError> {
         let built = build(loaded)?;
-        let Built { cloth, fabrics, garments, handles, obstacles, contact, warnings } = built;
+        let Built { cloth, fabrics, garments, handles, obstacles, contact, mut warnings } = built;
+        let (contact, missing) = wanted_contact(contact, &obstacles, loaded.dialect);
+        warnings.extend(missing);
+        let bodies = match contact {
+            Some(_) => {
+                Obstacles::new(&obstacles).map_err(|e| BuildError::TooLarge(e.to_string()))?
+            }
+            None => None,
+        };
         let scene = &loaded.scene;
         let settings =
             LinearSettings { tolerance: scene.linear_tolerance, ..LinearSettings::default() };
@@ -149,6 +158,7 @@ impl World {
             garments,
             obstacles,
             contact,
+            bodies,
             warnings,
             fabrics: Arc::new(fabrics),
             environment: Environment { gravity: World3::from(scene.gravity), wind },
@@ -163,7 +173,10 @@ impl World {
             prepared: None,
         };
         world.prepare().map_err(|e| BuildError::TooLarge(e.to_string()))?;
-        Ok(world)
+        match world.crossings(0) {
+            Some(crossings) => Err(BuildError::Tangled(crossings)),
+            None => Ok(world),
+        }
     }
 
     /// Puts a sizing field of your own in the place of the one in use, which `field` is given to
@@ -217,9 +230,18 @@ impl World {
         if let Some(remeshing) = &self.remeshing {
             let (before, next) = (self.cloth.mesh.uids().to_vec(), self.cloth.mesh.next_uid());
             let keep = self.handles.names();
-            let (report, times) = remeshing
-                .run(&mut self.cloth, &keep)
-                .map_err(|source| StepError::Remesh { frame, source })?;
+            let error = |source| StepError::Remesh { frame, source };
+            let saved = self.contact.is_some().then(|| self.cloth.clone());
+            let (mut report, mut times) =
+                remeshing.run(&mut self.cloth, &keep, false).map_err(error)?;
+            if let Some(saved) = saved
+                && report.n_edits() > 0
+                && self.crossings(frame).is_some()
+            {
+                // Flips and collapses took the surface through something: splits cannot.
+                self.cloth = saved;
+                (report, times) = remeshing.run(&mut self.cloth, &keep, true).map_err(error)?;
+            }
             if report.n_edits() > 0 {
                 self.prepared = None;
                 self.handles.follow(&before, next, &report.journal);
@@ -277,11 +299,22 @@ impl World {
         }
     }
 
-    /// Builds forces, matrix and names if the mesh has changed.
-    fn prepare(&mut self) -> Result<(), PatternError> {
+    /// What passes through what at the end of a frame; `None` if nothing does, or contact is off.
+    pub fn crossings(&self, frame: u64) -> Option<Crossings> {
+        let time = frame as f64 * self.frame_s;
+        let settings = self.contact.as_ref()?;
+        Crossings::find(&self.cloth, self.bodies.as_ref(), settings, time)
+    }
+
+    /// Builds forces, contact, matrix and names if the mesh has changed.
+    fn prepare(&mut self) -> Result<(), PrepareError> {
         if self.prepared.is_none() {
             let h = self.frame_s / f64::from(self.substeps);
-            let system = System::new(&self.cloth, &self.fabrics, &self.environment, h)?;
+            let mut system = System::new(&self.cloth, &self.fabrics, &self.environment, h)?;
+            if let Some(settings) = self.contact {
+                let contact = SurfaceContact::new(&self.cloth, self.bodies.as_ref(), settings)?;
+                system.set_contact(Box::new(contact));
+            }
             self.prepared = Some(Prepared { system, names: by_name(&self.cloth.mesh) });
         }
         Ok(())
@@ -318,20 +351,20 @@ impl World {
     }
 }
 
-/// What is lost because contact is not simulated yet: an error for a scene that asks for it, a
-/// warning for one of ARCSim, which always has it, without obstacles.
-///
-/// # Errors
-/// [`BuildError::NoContact`].
-pub fn contact_is_missing(loaded: &Loaded) -> Result<Option<String>, BuildError> {
-    let scene = &loaded.scene;
-    match (&scene.contact, loaded.dialect) {
-        (None, _) => Ok(None),
-        _ if !scene.obstacles.is_empty() => Err(BuildError::NoContact("the scene has obstacles")),
-        (Some(contact), _) if !contact.self_contact => Ok(None),
-        (_, Dialect::Organza) => Err(BuildError::NoContact("cloth is to touch cloth")),
-        (_, Dialect::Arcsim) => Ok(Some(
-            "ARCSim lets cloth touch itself; self-contact is not simulated in this version".into(),
-        )),
+/// The contact to simulate, and what the user should know of what is left out: cloth of an ARCSim
+/// scene without obstacles does not touch itself, unless the scene says so in our words.
+fn wanted_contact(
+    contact: Option<ContactSettings>,
+    obstacles: &[Obstacle],
+    dialect: Dialect,
+) -> (Option<ContactSettings>, Option<String>) {
+    match contact {
+        Some(settings) if !settings.self_contact && obstacles.is_empty() => (None, None),
+        Some(_) if dialect == Dialect::Arcsim && obstacles.is_empty() => {
+            let what =
+                "ARCSim lets cloth touch itself; in a scene without obstacles this is left out";
+            (None, Some(what.into()))
+        }
+        contact => (contact, None),
     }
 }

@@ -48,9 +48,13 @@ pub fn adapt(
         return Err(RemeshError::Stale { expected, got });
     }
     let mut driver = Driver::new(cloth, metrics, settings);
-    driver.flip_all();
-    driver.split_invalid();
-    driver.collapse_all();
+    if settings.keep_surface {
+        driver.split_invalid();
+    } else {
+        driver.flip_all();
+        driver.split_invalid();
+        driver.collapse_all();
+    }
     Ok(driver.finish())
 }
 

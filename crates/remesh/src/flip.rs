@@ -101,6 +101,9 @@ impl Driver<'_> {
     /// triangles that changed.
     pub(crate) fn settle(&mut self) {
         self.flipped.clear();
+        if self.settings.keep_surface {
+            self.flip_queue.clear();
+        }
         while let Some(h) = self.flip_queue.pop() {
             if !self.wants_flip(h) {
                 continue;

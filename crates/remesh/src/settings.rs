@@ -23,6 +23,9 @@ pub struct RemeshSettings<'a> {
     /// would strain a triangle further is refused, unless it was so before. Panels beyond the end of
     /// the slice are not limited.
     pub stretch_limits: &'a [[f64; 2]],
+    /// Only splits, which leave the surface where it is: for cloth in tight places, where a flip or a
+    /// collapse could take it through something.
+    pub keep_surface: bool,
     /// Metric wanted for the proximity of obstacles, one per triangle (1/m²); handed to the sizing
     /// field.
     pub obstacle: Option<&'a [Metric]>,
@@ -37,6 +40,7 @@ impl Default for RemeshSettings<'_> {
             keep: &[],
             fixed_panels: &[],
             stretch_limits: &[],
+            keep_surface: false,
             obstacle: None,
         }
     }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use organza::fabric::Fabric;
 use organza::record::{garments, place};
 use organza::scene::{self, Cloth, Dialect, LoadOptions, Loaded};
-use organza::world::{World, contact_is_missing};
+use organza::world::World;
 
 use super::args::Check;
 use super::{Failure, output};
@@ -17,11 +17,8 @@ pub(crate) fn run(args: &Check) -> Result<(), Failure> {
         allow_unsupported: args.scene.allow_unsupported,
     };
     let loaded = scene::load(&args.scene.scene, &load)?;
-    let world = World::without_contact(&loaded).map_err(|error| place(&loaded, &error))?;
+    let world = World::new(&loaded).map_err(|error| place(&loaded, &error))?;
     output::warnings(&loaded.warnings);
-    let missing = contact_is_missing(&loaded);
-    let missing = missing.unwrap_or_else(|error| Some(place(&loaded, &error).to_string()));
-    missing.iter().for_each(|warning| output::warning(warning));
     world.warnings.iter().for_each(|warning| output::warning(warning));
     let mut text = String::new();
     // Writing to a String cannot fail.

@@ -1,9 +1,11 @@
 //! Contact of the cloth with itself and with obstacles: what `collision` finds, as the potential and
 //! the bound on steps that the solver wants.
 
+mod crossings;
 mod pair;
 mod slip;
 
+use crate::obstacle::Obstacle;
 use cloth_dynamics::Stage;
 use cloth_dynamics::contact::Contact;
 use cloth_dynamics::solver::BlockMatrix;
@@ -12,6 +14,8 @@ use mesh_core::{ClothState, World3, par};
 use pair::Sides;
 use slip::Slip;
 use std::sync::Arc;
+
+pub use crossings::Crossings;
 
 /// Where the vertices of all obstacles are at a time (s).
 pub type Motion = Arc<dyn Fn(f64) -> Vec<World3> + Send + Sync>;
@@ -36,6 +40,29 @@ pub struct Obstacles {
     pub motion: Motion,
     /// Friction coefficient of every triangle's obstacle on cloth, by vertex (1).
     pub friction: Vec<f64>,
+}
+
+impl Obstacles {
+    /// All obstacles of a scene; `None` if there are none.
+    ///
+    /// # Errors
+    /// If there are too many triangles.
+    pub fn new(obstacles: &[Obstacle]) -> Result<Option<Obstacles>, SurfaceError> {
+        let mut surface: Option<Surface> = None;
+        let mut friction = Vec::new();
+        for obstacle in obstacles {
+            let n = obstacle.n_vertices();
+            let own = Surface::new(n, &obstacle.triangles)?;
+            surface = Some(match surface {
+                None => own,
+                Some(others) => others.joined(&own),
+            });
+            friction.extend(std::iter::repeat_n(obstacle.friction, n));
+        }
+        let bodies = obstacles.to_vec();
+        let motion = move |time| bodies.iter().flat_map(|body| body.positions(time)).collect();
+        Ok(surface.map(|surface| Obstacles { surface, friction, motion: Arc::new(motion) }))
+    }
 }
 
 /// Stiffness of a contact in units of mass over h²: what stops a vertex that moves at some d̂/h within

@@ -94,11 +94,7 @@ pub fn place(loaded: &Loaded, error: &BuildError) -> SceneErrors {
         BuildError::Obstacle { obstacle, message } => {
             (format!("obstacles[{obstacle}].mesh"), message.clone())
         }
-        BuildError::NoContact(_) => {
-            let key = if loaded.scene.obstacles.is_empty() { "contact" } else { "obstacles" };
-            (key.into(), error.to_string())
-        }
-        BuildError::TooLarge(_) => ("cloths".into(), error.to_string()),
+        BuildError::Tangled(_) | BuildError::TooLarge(_) => ("cloths".into(), error.to_string()),
     };
     loaded.places.issue(IssueKind::Value, &path, message).into()
 }
