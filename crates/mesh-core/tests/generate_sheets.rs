@@ -1,8 +1,8 @@
-//! Grids, discs, tubes and spheres against closed forms.
+//! Grids, discs, tubes, spheres, boxes and capsules against closed forms.
 
 use mesh_core::generate::{
     Diagonal, GenerateError, MAX_SIZE, MAX_TRIANGLES, Sheet, Surface, boundary_chain,
-    boundary_loops, disc, grid, sphere, tube,
+    boundary_loops, capsule, cuboid, disc, grid, sphere, tube,
 };
 use mesh_core::{HalfEdge, Mesh, VertexId, World3, geometry};
 use std::f64::consts::{PI, TAU};
@@ -144,6 +144,54 @@ fn spheres() {
 }
 
 #[test]
+fn boxes() {
+    let block = cuboid([2.0, 3.0, 5.0]).unwrap();
+    assert_eq!((block.positions.len(), block.triangles.len()), (8, 12));
+    // Every corner once, around the origin.
+    for (k, corner) in block.positions.iter().enumerate() {
+        assert_eq!(corner.abs(), World3::new(1.0, 1.5, 2.5));
+        assert!(!block.positions[..k].contains(corner));
+    }
+    let (volume, area, euler) = measure(&block);
+    assert_eq!(euler, 2);
+    close(volume, 30.0, 1e-15);
+    close(area, 62.0, 1e-15);
+}
+
+#[test]
+fn capsules() {
+    let (radius, length) = (0.5, 2.0);
+    let mut gaps = Vec::new();
+    for around in [8, 16, 32, 64] {
+        let rod = capsule(radius, length, around).unwrap();
+        let n_rings = around / 4;
+        assert_eq!(rod.positions.len(), 2 + 2 * n_rings * around);
+        assert_eq!(rod.triangles.len(), 4 * n_rings * around);
+        for x in &rod.positions {
+            let axis = World3::z() * x.z.clamp(-0.5 * length, 0.5 * length);
+            assert!(((x - axis).norm() - radius).abs() < 1e-15, "{x}");
+        }
+        let (volume, area, euler) = measure(&rod);
+        assert_eq!(euler, 2);
+        let exact = PI * radius * radius * (length + 4.0 / 3.0 * radius);
+        gaps.push([volume / exact - 1.0, area / (TAU * radius * (length + 2.0 * radius)) - 1.0]);
+    }
+    // Second order in the length of a segment, from inside.
+    for pair in gaps.windows(2) {
+        for k in 0..2 {
+            assert!(
+                pair[1][k] < 0.0 && (3.7..4.3).contains(&(pair[0][k] / pair[1][k])),
+                "{gaps:?}"
+            );
+        }
+    }
+    // Other numbers of segments do as well.
+    for around in [4, 5, 7] {
+        assert_eq!(measure(&capsule(radius, length, around).unwrap()).2, 2);
+    }
+}
+
+#[test]
 fn bad_sizes() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-9, 2.0 * MAX_SIZE] {
         let errors = [
@@ -153,6 +201,9 @@ fn bad_sizes() {
             tube(bad, 1.0, 8, 1).unwrap_err(),
             tube(1.0, bad, 8, 1).unwrap_err(),
             sphere(bad, 1).unwrap_err(),
+            cuboid([1.0, bad, 1.0]).unwrap_err(),
+            capsule(bad, 1.0, 8).unwrap_err(),
+            capsule(1.0, bad, 8).unwrap_err(),
         ];
         for error in errors {
             assert!(
@@ -171,6 +222,7 @@ fn bad_counts() {
         disc(1.0, 0).unwrap_err(),
         tube(1.0, 1.0, 2, 1).unwrap_err(),
         tube(1.0, 1.0, 3, 0).unwrap_err(),
+        capsule(1.0, 1.0, 3).unwrap_err(),
     ];
     for error in few {
         assert!(matches!(error, GenerateError::TooFew { .. }), "{error}");
@@ -183,6 +235,7 @@ fn bad_counts() {
         tube(1.0, 1.0, huge, 1).unwrap_err(),
         sphere(1.0, 10).unwrap_err(),
         sphere(1.0, huge).unwrap_err(),
+        capsule(1.0, 1.0, huge).unwrap_err(),
     ];
     for error in many {
         assert!(matches!(error, GenerateError::TooMany { .. }), "{error}");

@@ -6,7 +6,7 @@ use io_mcap::{Recording, Status};
 use serde::ser::{SerializeMap, Serializer};
 use serde::{Deserialize, Serialize};
 
-use crate::record::RunError;
+use crate::record::{OBSTACLES, RunError};
 use crate::report::FrameReport;
 
 /// Whether a recording is whole.
@@ -101,6 +101,8 @@ pub struct Info {
     pub status: Wholeness,
     /// Frames with a checkpoint.
     pub checkpoints: Vec<u64>,
+    /// Names of the obstacles in the order of the scene.
+    pub obstacles: Vec<String>,
     /// Names of the attached files, the scene first.
     pub attachments: Vec<String>,
     /// The report of every complete frame; frame 0 is the initial state.
@@ -130,6 +132,7 @@ impl Info {
             frames.push(report);
         }
         let metadata = recording.metadata();
+        let obstacles = metadata.get(OBSTACLES);
         let mut skipped: Vec<String> = Vec::new();
         for stage in frames.iter().flat_map(|frame| &frame.skipped) {
             if !skipped.contains(stage) {
@@ -143,6 +146,9 @@ impl Info {
             frames_planned: metadata.get("frames").and_then(|n| n.parse().ok()),
             status: Wholeness::of(&recording.status()),
             checkpoints: recording.checkpoints().map(|c| c.frame).collect(),
+            obstacles: obstacles
+                .and_then(|names| serde_json::from_str(names).ok())
+                .unwrap_or_default(),
             attachments: recording.attachments().into_iter().map(|a| a.name).collect(),
             totals: totals(&frames),
             skipped,

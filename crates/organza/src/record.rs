@@ -36,7 +36,7 @@ pub use obstacles::obstacles;
 pub use range::{FrameRange, RangeError};
 pub use resume::{Resumed, resume, resume_with};
 pub use settings::Settings;
-pub(crate) use settings::up;
+pub(crate) use settings::{OBSTACLES, up};
 
 use std::path::{Path, PathBuf};
 

@@ -3,9 +3,12 @@
 
 use std::path::{Path, PathBuf};
 
+use mesh_core::World3;
+use organza::build::build;
+use organza::contact::ContactSettings;
 use organza::fabric::Fabric;
 use organza::scene::format::{BendingModel, Integrator, Multipliers, Select};
-use organza::scene::motion::Interpolation;
+use organza::scene::motion::{Interpolation, Turning};
 use organza::scene::{
     Dialect, IssueKind, LoadOptions, Loaded, MeshSource, SceneErrors, Source, from_sources, load,
     parse,
@@ -28,10 +31,7 @@ fn arcsims_own_flag_is_read_unmodified() {
     let loaded = load(&folder.join("conf/flag.json"), &LoadOptions::default())
         .unwrap_or_else(|errors| panic!("{errors}"));
     assert_eq!(loaded.dialect, Dialect::Arcsim);
-    let notices: Vec<String> = loaded.warnings.iter().map(|w| w.message.clone()).collect();
-    assert_eq!(notices.len(), 1, "{notices:?}");
-    assert!(notices[0].contains("self-contact is not simulated in this version"));
-    assert_eq!(loaded.warnings[0].kind, IssueKind::Notice);
+    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
 
     let scene = &loaded.scene;
     assert_eq!(scene.name, "flag");
@@ -63,6 +63,9 @@ fn arcsims_own_flag_is_read_unmodified() {
     assert_eq!(handle.select, Select::Vertices(vec![0, 3]));
     assert_eq!(handle.stiffness_n_per_m, Some(1e3));
     assert_eq!(handle.end_s, f64::INFINITY);
+    // ARCSim lets cloth touch itself.
+    let contact = ContactSettings { thickness: 0.01, friction: 0.6, self_contact: true };
+    assert_eq!((scene.contact, scene.obstacles.len()), (Some(contact), 0));
 
     // A resumed run reads what was attached, not the disk.
     let Source { name, bytes } = &loaded.sources[0];
@@ -71,17 +74,23 @@ fn arcsims_own_flag_is_read_unmodified() {
 }
 
 #[test]
-fn arcsims_own_sphere_needs_leave_to_drop_its_obstacle() {
+fn arcsims_own_sphere_is_read_unmodified() {
     let Some(folder) = arcsim() else { return };
-    let path = folder.join("conf/sphere.json");
-    let errors = load(&path, &LoadOptions::default()).unwrap_err();
-    let messages: Vec<String> = errors.issues().iter().map(ToString::to_string).collect();
-    let expected = format!("{}:32:5: obstacles: not supported yet: obstacles", path.display());
-    assert_eq!(messages, [expected]);
-
-    let options = LoadOptions { allow_unsupported: true, ..LoadOptions::default() };
-    let loaded = load(&path, &options).unwrap_or_else(|errors| panic!("{errors}"));
-    assert_eq!(loaded.warnings.len(), 2);
+    let loaded = load(&folder.join("conf/sphere.json"), &LoadOptions::default())
+        .unwrap_or_else(|errors| panic!("{errors}"));
+    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    let built = build(&loaded).unwrap();
+    let ball = &built.obstacles[0];
+    assert_eq!((built.obstacles.len(), ball.name.as_str()), (1, "obstacle0"));
+    assert_eq!((ball.triangles.len(), ball.n_vertices(), ball.friction), (1280, 642, 0.3));
+    let contact = ContactSettings { thickness: 0.005, friction: 0.6, self_contact: true };
+    assert_eq!(built.contact, Some(contact));
+    // A sphere of 0.1 m, at these heights along y when its keyframes say so; the last for good.
+    for (time, y) in [(0.0, 0.0), (1.0, 0.0), (3.0, -1.5), (5.0, 1.5), (7.0, -0.4), (9.0, -0.4)] {
+        for x in ball.positions(time) {
+            assert!(((x - World3::new(0.0, y, 0.0)).norm() - 0.1).abs() < 1e-5, "{time}: {x}");
+        }
+    }
     let scene = loaded.scene;
     assert_eq!((scene.frames, scene.substeps), (250, 8));
     assert_eq!(scene.handles[0].end_s, 7.0);
@@ -91,6 +100,54 @@ fn arcsims_own_sphere_needs_leave_to_drop_its_obstacle() {
     assert_eq!((wind.velocity, wind.density), ([0.0; 3], 1.0));
     assert_eq!(scene.cloths[0].transform.translate, [-0.5, -1.0, 0.5]);
     assert_eq!(scene.cloths[0].strain_limits, None);
+}
+
+#[test]
+fn obstacles_motions_and_contact_are_translated() {
+    let text = |more: &str| {
+        with(
+            &format!(
+                r#""motions": [[{{"time": 1, "transform": {{"scale": 2}}}}, {{"time": 2}}]], {more}
+"obstacles": [{{"mesh": "a.obj"}},
+{{"mesh": "a.obj", "motion": 0, "transform": {{"translate": [1, 2, 3]}}, "start_time": 0}}],"#
+            ),
+            "",
+            "",
+        )
+    };
+    let scene = read(&text(r#""friction": 0.2, "obs_friction": 0.1,"#), &[], false).unwrap().scene;
+    let contact = ContactSettings { thickness: 1e-3, friction: 0.2, self_contact: true };
+    assert_eq!(scene.contact, Some(contact));
+    let [first, second] = &scene.obstacles[..] else { panic!() };
+    assert_eq!((first.friction, &first.motion), (0.1, &None));
+    assert_eq!(second.transform.translate, [1.0, 2.0, 3.0]);
+    let motion = second.motion.as_ref().unwrap();
+    assert_eq!((motion.turning, motion.interpolation), (Turning::Shortest, Interpolation::Smooth));
+    assert_eq!(motion.at(1.0).scaling(), 2.0);
+
+    // One of both ways to keep things apart is enough, and without any nothing touches.
+    for (disable, left) in [("[\"proximity\"]", 2), ("[\"collision\", \"proximity\"]", 0)] {
+        let loaded = read(&text(&format!("\"disable\": {disable},")), &[], false).unwrap();
+        assert_eq!(
+            (loaded.scene.obstacles.len(), loaded.scene.contact.is_some()),
+            (left, left > 0)
+        );
+        assert_eq!(loaded.warnings.len(), usize::from(left == 0), "{:?}", loaded.warnings);
+    }
+
+    complains(
+        &text(r#""friction": -1, "magic": {"repulsion_thickness": 0},"#)
+            .replace("\"motion\": 0", "\"motion\": 3")
+            .replace("{\"mesh\": \"a.obj\"}", "{\"mesh\": \"b.obj\", \"end_time\": 3}"),
+        &[],
+        &[
+            "c/s.json:1:116: friction: must be zero or more and finite, got -1",
+            "c/s.json:1:153: magic.repulsion_thickness: must be positive and finite, got 0",
+            "c/s.json:2:24: obstacles[0].mesh: there is no file `b.obj` among those attached",
+            "c/s.json:2:33: obstacles[0].end_time: not supported yet: obstacles that come and go",
+            "c/s.json:3:29: obstacles[1].motion: there is no such motion, the scene has 1",
+        ],
+    );
 }
 
 fn attached() -> Vec<Source> {
@@ -201,7 +258,7 @@ fn what_is_not_simulated_is_listed_with_its_place() {
         r#", "yield_curv": 200, "weakening": 0}, {"data": "m.json", "toughness": 1"#,
     );
     let expected = [
-        (1, 36, "obstacles", "obstacles"),
+        (1, 36, "obstacles", "obstacles by a file for every frame"),
         (1, 61, "morphs", "morphs"),
         (1, 77, "motions", "motion files"),
         (2, 14, "handles[0].type", "glue handles"),

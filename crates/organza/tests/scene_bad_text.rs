@@ -158,7 +158,7 @@ fn unknown_and_missing_keys() {
         "'a`, expected `b': 1,",
         "s.json5:1:13: a`, expected `b: unknown key `a`, expected `b`, \
         expected one of $schema, name, frames, frames_per_second, substeps, gravity, wind, integrator, \
-        newton, linear_solver, linear_tolerance, cloths, handles, camera, recording",
+        newton, linear_solver, linear_tolerance, cloths, handles, obstacles, contact, camera, recording",
     );
 }
 
@@ -228,15 +228,13 @@ fn complaints_about_set_values_name_the_argument() {
 
 #[test]
 fn what_is_not_supported_is_an_error_or_a_warning() {
-    let text = with(
-        "obstacles: [{}], self_contact: true, fluid: null, friction: false,",
-        "plasticity: {yield: 1}",
-    );
+    let text =
+        with("shots: [{}], restraint: true, fluid: null, fluids: false,", "plasticity: {yield: 1}");
     let errors = errors_of(text.as_bytes(), &[]);
     assert_eq!(
         errors.to_string(),
-        "s.json5:1:13: obstacles: not supported yet: obstacles\n\
-         s.json5:1:30: self_contact: not supported yet: contact of cloth with itself\n\
+        "s.json5:1:13: shots: not supported yet: camera shots\n\
+         s.json5:1:26: restraint: not supported yet: adaptively restrained dynamics\n\
          s.json5:2:40: cloths[0].plasticity: not supported yet: plastic deformation\n\
          use --allow-unsupported to run without what is not supported yet"
     );

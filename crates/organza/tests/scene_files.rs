@@ -90,6 +90,37 @@ fn cantilever_resolves_its_boundary_layer() {
 }
 
 #[test]
+fn sphere_moves_as_that_of_narain_2012() {
+    let loaded = own("sphere.json5", &[]);
+    let built = organza::build::build(&loaded).unwrap();
+    let contact = built.contact.unwrap();
+    assert!(contact.self_contact && contact.thickness == 0.005);
+    let [ball] = &built.obstacles[..] else { panic!() };
+    for (time, y) in [(0.0, 0.0), (2.0, 0.0), (3.0, -1.5), (5.0, 1.5), (6.0, 0.0), (8.0, -0.4)] {
+        for x in ball.positions(time) {
+            let from = x - mesh_core::World3::new(0.0, y, 0.0);
+            assert!((from.norm() - 0.1).abs() < 1e-12, "{time}: {x}");
+        }
+    }
+    // Nothing touches at the start, and the corners held are above the ball.
+    let distance = |x: &mesh_core::World3| x.norm() - 0.1;
+    assert!(built.cloth.x.iter().map(distance).fold(f64::INFINITY, f64::min) > 0.3);
+    assert_eq!(built.handles.names().len(), 2);
+    assert_eq!(loaded.scene.handles[0].end_s, 7.0);
+}
+
+#[test]
+fn drape_starts_free_above_its_sphere() {
+    let built = organza::build::build(&own("drape.json5", &[])).unwrap();
+    let [ball] = &built.obstacles[..] else { panic!() };
+    assert!(!ball.is_moving());
+    assert!(ball.positions(3.0).iter().all(|x| (x.norm() - 0.25).abs() < 1e-12));
+    let lowest = built.cloth.x.iter().map(|x| x.norm()).fold(f64::INFINITY, f64::min);
+    assert!((lowest - 0.3).abs() < 1e-12, "{lowest}");
+    assert!(built.contact.unwrap().self_contact);
+}
+
+#[test]
 fn values_can_be_set_from_the_command_line() {
     let scene = own(
         "hang.json5",

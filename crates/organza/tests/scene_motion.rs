@@ -75,6 +75,63 @@ fn smooth_motion_has_no_jump_of_speed_and_rests_at_its_ends() {
     assert!((speed(1.0 - h, 1.0 + h) - 1.0).abs() < 1e-4);
 }
 
+/// About x, then about y: the axes differ from keyframe to keyframe.
+fn tumbling(turning: Turning) -> Motion {
+    let about = |axis, degrees| Transform {
+        rotate: Some(AxisAngle { axis, degrees }),
+        ..Transform::default()
+    };
+    let keys = [
+        (0.0, Transform::default()),
+        (1.0, about([1.0, 0.0, 0.0], 100.0)),
+        (3.0, about([0.0, 1.0, 0.0], 250.0)),
+        (4.0, about([0.0, 0.0, 1.0], -170.0)),
+    ];
+    Motion { turning, ..motion(Interpolation::Smooth, &keys) }
+}
+
+#[test]
+fn shortest_rotations_meet_their_keyframes_without_a_jump_of_speed() {
+    let motion = tumbling(Turning::Shortest);
+    let h = 1e-6;
+    let speed = |a: f64, b: f64| (image(motion.at(b)) - image(motion.at(a))) / (b - a);
+    for key in &motion.keyframes {
+        let t = key.time_s;
+        assert!((image(motion.at(t)) - image(key.transform.similarity())).norm() < 1e-14);
+        let jump = speed(t - h, t) - speed(t, t + h);
+        assert!(jump.norm() < 1e-3, "{t}: {jump}");
+    }
+    assert_eq!(motion.at(-1.0), motion.at(0.0));
+    assert_eq!(motion.at(9.0), motion.at(4.0));
+    assert!(speed(0.0, h).norm() < 1e-4);
+}
+
+#[test]
+fn rotations_go_the_shorter_way_or_as_many_turns_as_written() {
+    let half = |turning, degrees| {
+        let keys = [(0.0, turned(0.0)), (2.0, turned(degrees))];
+        let motion = Motion { turning, ..motion(Interpolation::Smooth, &keys) };
+        motion.at(1.0)
+    };
+    for (degrees, shorter) in [(90.0, 45.0), (300.0, -30.0), (-200.0, 80.0), (710.0, -5.0)] {
+        for (turning, middle) in [(Turning::Shortest, shorter), (Turning::AxisAngle, 0.5 * degrees)]
+        {
+            let gap = image(half(turning, degrees)) - image(turned(middle).similarity());
+            assert!(gap.norm() < 1e-13, "{turning:?} {degrees}: {gap}");
+        }
+    }
+}
+
+#[test]
+fn scale_changes_smoothly_too() {
+    let sized = |scale| Transform { scale, ..Transform::default() };
+    let motion = motion(Interpolation::Smooth, &[(0.0, sized(1.0)), (1.0, sized(3.0))]);
+    assert_eq!(motion.at(0.5).scaling(), 2.0);
+    assert!(motion.is_moving());
+    let still = Motion { keyframes: vec![motion.keyframes[0]; 1], ..motion };
+    assert!(!still.is_moving());
+}
+
 #[test]
 fn a_handle_moves_its_points_relative_to_where_it_took_hold() {
     let keys = [(0.0, moved(5.0)), (1.0, moved(7.0))];

@@ -104,7 +104,7 @@ Examples:
   organza info flag.mcap --json | jq '.totals[\"seconds.total\"].mean'
 
 The JSON document is one object: recording, software, scene, frames_planned, status {state:
-complete|cut|damaged, message}, checkpoints [frame], attachments [name], frames [report of each
+complete|cut|damaged, message}, checkpoints [frame], obstacles [name], attachments [name], frames [report of each
 frame], totals {figure: {min, mean, max, sum}}, skipped [stage and why].")]
 pub(crate) struct Info {
     /// Recording to read

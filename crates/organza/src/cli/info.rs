@@ -54,6 +54,9 @@ fn write(out: &mut String, info: &Info) -> fmt::Result {
     writeln!(out, "{}; {n}{planned} frames, frame 0 is the initial state", info.status.message)?;
     let checkpoints: Vec<String> = info.checkpoints.iter().map(u64::to_string).collect();
     writeln!(out, "checkpoints: {}", join(&checkpoints))?;
+    if !info.obstacles.is_empty() {
+        writeln!(out, "obstacles: {}", join(&info.obstacles))?;
+    }
     writeln!(out, "attached: {}\n", join(&info.attachments))?;
     COLUMNS.iter().try_for_each(|(name, width, _)| write!(out, "{name:>width$}"))?;
     writeln!(out)?;

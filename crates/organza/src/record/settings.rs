@@ -20,6 +20,8 @@ const ALLOW_UNSUPPORTED: &str = "allow_unsupported";
 const FRAMES: &str = "frames";
 const CHECKPOINT_EVERY: &str = "checkpoint_every_frames";
 const OWN_WORLD: &str = "own_world";
+/// Names of the obstacles, a list as JSON; absent where there are none.
+pub(crate) const OBSTACLES: &str = "obstacles";
 
 /// How a run was made. With the attached files it decides every bit of its frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -88,6 +90,10 @@ impl Settings {
             (FRAMES.to_owned(), self.frames.to_string()),
             (CHECKPOINT_EVERY.to_owned(), self.checkpoint_every.to_string()),
         ]);
+        if !scene.obstacles.is_empty() {
+            let names: Vec<&str> = scene.obstacles.iter().map(|o| o.name.as_str()).collect();
+            metadata.insert(OBSTACLES.to_owned(), text(names.into()));
+        }
         if self.own_world {
             metadata.insert(OWN_WORLD.to_owned(), true.to_string());
         }

@@ -145,6 +145,7 @@ pub(crate) fn assert_same(a: &OwnedFrame, b: &OwnedFrame, what: &str) {
         assert!(bits(&a.points) == bits(&b.points), "{what}: points differ");
         assert!(a.material == b.material, "{what}: material coordinates differ");
     }
+    assert_eq!(a.obstacles, b.obstacles, "{what}");
     assert_eq!((&a.camera, &a.transforms), (&b.camera, &b.transforms), "{what}");
     let without_time = |report: &serde_json::Value| {
         let mut report = report.clone();
