@@ -157,7 +157,7 @@ const LIMIT_PATIENCE: usize = 3;
 /// The same, while obstacles have not arrived where they are to be.
 const ARRIVAL_PATIENCE: usize = 6;
 /// How often what is in the way of obstacles is looked for, to go along with them.
-const MAX_CARRIES: usize = 8;
+const MAX_CARRIES: usize = 16;
 /// Share of a free way that is gone: the rest keeps gaps open.
 const CAUTION: f64 = 0.9;
 

@@ -93,7 +93,7 @@ pub struct SurfaceContact {
     candidates: Candidates,
     /// Pairs that may come near on the way that was last looked at.
     near: Vec<Sides>,
-    /// Those with obstacles that do touch on it.
+    /// Those that do touch on it.
     in_the_way: Vec<Sides>,
     slips: Vec<Slip>,
     /// Mass over h² by vertex (N/m).
@@ -248,7 +248,7 @@ impl SurfaceContact {
             found.iter().zip(&free).filter_map(|((sides, _), free)| free.map(|t| (*sides, t)));
         let kept: Vec<(Sides, f64)> = kept.collect();
         self.near = kept.iter().map(|(sides, _)| *sides).collect();
-        let hits = kept.iter().filter(|(sides, t)| *t < 1.0 && !sides.is_within_cloth());
+        let hits = kept.iter().filter(|(_, t)| *t < 1.0);
         self.in_the_way = hits.map(|(sides, _)| *sides).collect();
         kept.into_iter().map(|(_, t)| t).fold(1.0, f64::min)
     }
@@ -330,16 +330,26 @@ impl Contact for SurfaceContact {
     }
 
     fn carry(&self, x: &[World3], step: &mut [World3]) -> bool {
-        let Some(moving) = &self.obstacles else { return false };
         let mut carried: Vec<Option<World3>> = vec![None; x.len()];
         for sides in &self.in_the_way {
-            let weights = sides.closest(&self.corners(sides, x)).weights;
-            let theirs = (0..4).filter(|&k| !sides.is_cloth[k]);
-            let way = |k: usize| {
-                let i = sides.vertices[k] as usize;
-                (moving.then[i] - moving.now[i]) * weights[k].abs()
+            let way = match &self.obstacles {
+                Some(moving) if !sides.is_within_cloth() => {
+                    let weights = sides.closest(&self.corners(sides, x)).weights;
+                    let way = |k: usize| {
+                        let i = sides.vertices[k] as usize;
+                        (moving.then[i] - moving.now[i]) * weights[k].abs()
+                    };
+                    (0..4).filter(|&k| !sides.is_cloth[k]).map(way).sum()
+                }
+                // Cloth that runs into cloth takes it along.
+                _ => sides
+                    .vertices
+                    .map(|i| step[i as usize])
+                    .into_iter()
+                    .fold(World3::zeros(), |a, b| {
+                        if a.norm_squared() >= b.norm_squared() { a } else { b }
+                    }),
             };
-            let way: World3 = theirs.map(way).sum();
             for k in (0..4).filter(|&k| sides.is_cloth[k]) {
                 let slot = &mut carried[sides.vertices[k] as usize];
                 if slot.is_none_or(|old| old.norm_squared() < way.norm_squared()) {
