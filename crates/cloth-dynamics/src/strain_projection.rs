@@ -3,10 +3,9 @@
 //!
 //! Newton's method ends when hardly anything moves any more, or by order; a handful of triangles in
 //! a thousand may then still be strained beyond their limits. Each is given the nearest admissible
-//! deformation gradient, its singular values clamped, with its centre of mass where it was: the
-//! positions that are closest in the norm of the masses. Sweeps over the triangles around what moved
-//! follow until all are in bounds (Gauss–Seidel, as in Provot1995). Momentum is kept exactly, and the
-//! cost is that of the triangles out of bounds alone.
+//! deformation gradient, its singular values clamped, with its centre of mass where it was. Sweeps
+//! over the triangles around what moved follow until all are in bounds (Gauss–Seidel, as the edges of
+//! Provot1995). Momentum is kept to rounding, and the cost is that of the triangles out of bounds.
 
 use crate::fabric::{Fabric, StrainLimits};
 use crate::rest::RestTriangle;
@@ -14,6 +13,9 @@ use crate::strain_limit::{is_free, orthonormal, principal_stretches};
 use mesh_core::{World3, par};
 use nalgebra::Matrix2;
 use std::sync::Arc;
+
+#[cfg(test)]
+mod tests;
 
 /// Excess that is not worth a correction (1).
 const TOLERANCE: f64 = 1e-4;
@@ -89,7 +91,9 @@ impl StrainProjection {
     }
 
     /// Brings triangles that are out of bounds back, by moving their vertices; `mass` is infinite
-    /// where a vertex is held (kg). `None` if all are in bounds as they are; else whether they are now.
+    /// where a vertex is held (kg). `None` if all are in bounds as they are; true if all are now; false
+    /// if the sweeps have run out. Triangles with three held vertices do not count, since nothing can
+    /// be done about them.
     pub(crate) fn project(&mut self, x: &mut [World3], mass: &dyn Fn(u32) -> f64) -> Option<bool> {
         let mut todo = self.out_of_bounds(x);
         if todo.is_empty() {
@@ -128,10 +132,15 @@ impl StrainProjection {
         (0..).zip(marks).filter(|(_, is_marked)| *is_marked).map(|(e, _)| e).collect()
     }
 
-    /// Brings one triangle back; false if it was in bounds.
+    /// Brings one triangle back; false if it was in bounds, or cannot move.
     fn project_one(&self, e: usize, x: &mut [World3], mass: &dyn Fn(u32) -> f64) -> bool {
         let (rest, limits) = self.element(e);
         let corners = self.stencils[e];
+        let m = corners.map(mass);
+        let is_held = m.map(f64::is_infinite);
+        if is_held == [true; 3] {
+            return false;
+        }
         let at = corners.map(|i| x[i as usize]);
         let f = rest.deformation_gradient(&at);
         if is_free(limits, &f) {
@@ -149,8 +158,6 @@ impl StrainProjection {
         let Some(material) = b.try_inverse() else { return false };
         let edges = goal * material;
         let shape = [World3::zeros(), edges.column(0).into(), edges.column(1).into()];
-        let m = corners.map(mass);
-        let is_held = m.map(f64::is_infinite);
         // What is held stays, and the others take their places about it.
         let weights =
             if is_held.contains(&true) { is_held.map(|h| f64::from(u8::from(h))) } else { m };
