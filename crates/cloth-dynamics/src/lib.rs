@@ -2,8 +2,8 @@
 //!
 //! A step of length h is the minimum of Φ(x) = 1/(2h²) Σ mᵢ |xᵢ − x̃ᵢ|² + V(x): inertia against the
 //! energies of the fabric and of what acts on it. Every energy has an exact gradient and a positive
-//! semi-definite stiffness; Newton's method with line search lowers Φ in every iteration, so a step
-//! cannot blow up at any stiffness. The integrators differ only in which minima they ask for.
+//! semi-definite stiffness; Newton's method never ends above the Φ it started from, so a step cannot
+//! blow up at any stiffness. The integrators differ only in which minima they ask for.
 //!
 //! ```
 //! use cloth_dynamics::law::{Bending, Membrane, Quadratic};
