@@ -19,9 +19,9 @@ pub struct RemeshSettings<'a> {
     pub keep: &'a [u64],
     /// Panels whose triangles are left exactly as they are.
     pub fixed_panels: &'a [u32],
-    /// Least and largest principal stretch that a flip or a collapse may leave, by panel (1): one that
-    /// would strain a triangle further is refused, unless it was so before. Panels beyond the end of
-    /// the slice are not limited.
+    /// Least and largest principal stretch that a flip or a collapse may leave, by panel (1), on both
+    /// sides of 1: an edit that would strain a triangle further is refused, unless one of those it
+    /// replaces was strained as much. Panels beyond the end of the slice are not limited.
     pub stretch_limits: &'a [[f64; 2]],
     /// Metric wanted for the proximity of obstacles, one per triangle (1/m²); handed to the sizing
     /// field.
@@ -85,6 +85,14 @@ impl RemeshSettings<'_> {
         }
         if !(0.0..1.0).contains(&self.hysteresis) {
             return fail("hysteresis", self.hysteresis, "from 0 to below 1");
+        }
+        for &[min, max] in self.stretch_limits {
+            if !(0.0..=1.0).contains(&min) {
+                return fail("stretch_limits (least)", min, "from 0 to 1");
+            }
+            if !(1.0..=f64::INFINITY).contains(&max) {
+                return fail("stretch_limits (largest)", max, "at least 1");
+            }
         }
         Ok(())
     }

@@ -130,11 +130,16 @@ fn refusals_change_nothing() {
     let mut cloth = kind(13);
     let before = cloth.clone();
     let field = Uniform { size: 0.1 };
+    let stretched = |limits| RemeshSettings { stretch_limits: limits, ..RemeshSettings::default() };
     for (settings, name) in [
         (RemeshSettings { aspect_min: 1.5, ..RemeshSettings::default() }, "aspect_min"),
         (RemeshSettings { aspect_min: f64::NAN, ..RemeshSettings::default() }, "aspect_min"),
         (RemeshSettings { hysteresis: 1.0, ..RemeshSettings::default() }, "hysteresis"),
         (RemeshSettings { hysteresis: -0.1, ..RemeshSettings::default() }, "hysteresis"),
+        (stretched(&[[0.9, 1.1], [1.01, 1.1]]), "stretch_limits"),
+        (stretched(&[[0.9, 0.99]]), "stretch_limits"),
+        (stretched(&[[f64::NAN, 1.1]]), "stretch_limits"),
+        (stretched(&[[0.9, f64::NAN]]), "stretch_limits"),
     ] {
         let message = remesh(&mut cloth, &field, &settings).unwrap_err().to_string();
         assert!(message.starts_with(name), "{message}");
