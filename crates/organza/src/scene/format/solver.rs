@@ -14,12 +14,13 @@ pub enum Integrator {
     Sdirk2,
 }
 
-/// The nonlinear solve of each time step, by Newton's method with line search.
+/// The nonlinear solve of each time step, by Newton's method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Newton {
     /// Most iterations per solve. 1 is the fast setting: one linearised step, without a test for
-    /// convergence. With more, a step that has not converged is reported.
+    /// convergence. With more, a step that has not converged is reported. While triangles are out of
+    /// their strain limits, there may be three times as many.
     #[schemars(range(min = 1))]
     pub max_iterations: u32,
     /// The solve ends when an iteration changes no velocity by more than this (m/s).
