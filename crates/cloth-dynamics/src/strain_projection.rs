@@ -91,8 +91,9 @@ impl StrainProjection {
     }
 
     /// Brings triangles that are out of bounds back, by moving their vertices; `mass` is infinite
-    /// where a vertex is held (kg). `None` if all are in bounds as they are; else whether they are now.
-    /// Triangles with three held vertices do not count, since nothing can be done about them.
+    /// where a vertex is held (kg). `None` if all are in bounds as they are; true if all are now; false
+    /// if the sweeps have run out. Triangles with three held vertices do not count, since nothing can
+    /// be done about them.
     pub(crate) fn project(&mut self, x: &mut [World3], mass: &dyn Fn(u32) -> f64) -> Option<bool> {
         let mut todo = self.out_of_bounds(x);
         if todo.is_empty() {
