@@ -6,13 +6,11 @@ use std::path::Path;
 
 use cli_common::*;
 use io_mcap::{OwnedFrame, OwnedObstacle};
-use organza::build::BuildError;
 use organza::export::{Format, export};
 use organza::picture::{self, PictureOptions, View};
-use organza::record::{FrameRange, Resumed, Run, RunOptions, resume_with};
+use organza::record::{FrameRange, Resumed, Run, RunOptions, resume};
 use organza::render::Size;
 use organza::scene::{self, LoadOptions, Loaded};
-use organza::world::World;
 
 /// A sheet high above what happens here: a box that moves along x, and a wedge from a file.
 const SCENE: &str = r#"{
@@ -36,13 +34,9 @@ fn load(folder: &Folder) -> Loaded {
     scene::load(&folder.path("s.json5"), &LoadOptions::default()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn passing(loaded: &Loaded) -> Result<World, BuildError> {
-    World::without_contact(loaded)
-}
-
 fn record(loaded: &Loaded, path: &Path, frames: u32) {
     let options = RunOptions { frames: Some(frames), checkpoint_every: None, overwrite: true };
-    let run = Run::start_with(loaded, &LoadOptions::default(), path, &options, passing);
+    let run = Run::start(loaded, &LoadOptions::default(), path, &options);
     end(run.unwrap_or_else(|e| panic!("{e}")));
 }
 
@@ -83,8 +77,7 @@ fn a_run_that_goes_on_has_the_same_bits() {
     let [whole, part] = ["whole.mcap", "part.mcap"].map(|name| folder.path(name));
     record(&loaded, &whole, 4);
     record(&loaded, &part, 3);
-    let Resumed::Continues { from: 2, run, .. } = resume_with(&part, Some(4), passing).unwrap()
-    else {
+    let Resumed::Continues { from: 2, run, .. } = resume(&part, Some(4)).unwrap() else {
         panic!("frames 3 and 4 are to be made");
     };
     end(*run);
@@ -214,21 +207,4 @@ fn check_and_info_know_them() {
     let told = folder.good(&["info", "run.mcap", "--json"]).out;
     let told: serde_json::Value = serde_json::from_str(&told).unwrap();
     assert_eq!(told["obstacles"], serde_json::json!(["ball", "wedge # 1"]));
-}
-
-/// Until contact is simulated, a run that needs it does not begin.
-#[test]
-fn what_needs_contact_is_not_run_without() {
-    let folder = Folder::new("obstacles-refused");
-    load(&folder);
-    let ran = folder.run(&["simulate", "s.json5"]);
-    assert_eq!(ran.code, 2);
-    let expected = "s.json5:5:14: obstacles: contact is not simulated yet: the scene has obstacles";
-    assert!(ran.err.contains(expected), "{}", ran.err);
-    assert!(!folder.path("s.mcap").exists());
-    folder.write("scrap.obj", SCRAP);
-    folder.write("t.json5", TRIANGLE.replacen('{', "{ contact: {},", 1));
-    let ran = folder.run(&["simulate", "t.json5"]);
-    let expected = "t.json5:1:12: contact: contact is not simulated yet: cloth is to touch cloth";
-    assert!(ran.code == 2 && ran.err.contains(expected), "{}", ran.err);
 }
