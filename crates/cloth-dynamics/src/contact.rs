@@ -40,6 +40,10 @@ pub trait Contact: Send + Sync {
     fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix);
 }
 
+/// Stiffness of a contact in units of the mass of what touches over h²: enough to stop a vertex that
+/// comes with a few times d̂/h.
+pub const STIFFNESS: f64 = 20.0;
+
 /// The barrier −(d − d̂)² ln(d/d̂) for a gap d below d̂, zero beyond (Li2020 Eq. 6, here of the distance
 /// itself), with its first two derivatives; infinite for d ≤ 0. Energy is this times a stiffness
 /// (N/m).

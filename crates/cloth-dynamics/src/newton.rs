@@ -7,7 +7,8 @@
 //! ("one iteration is the fast setting") and is always reported.
 
 use crate::element::Stiffness;
-use crate::solver::{LinearError, LinearReport, LinearSolver, clear_fixed};
+use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
+use crate::solver::{LinearSolver, clear_fixed};
 use crate::system::System;
 use mesh_core::{World3, par};
 use nalgebra::Matrix3;
@@ -15,104 +16,6 @@ use std::time::Instant;
 
 #[cfg(test)]
 mod tests;
-
-/// When to stop.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct NewtonSettings {
-    /// The most iterations, each one linear solve; up to three times as many while triangles are out
-    /// of their strain limits.
-    pub max_iterations: usize,
-    /// The stage is converged when no vertex would change its velocity by more than this (m/s).
-    pub tolerance: f64,
-}
-
-impl Default for NewtonSettings {
-    fn default() -> Self {
-        NewtonSettings { max_iterations: 30, tolerance: 1e-3 }
-    }
-}
-
-/// What a solve did. Sums over the stages of a step, and over steps.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct SolveReport {
-    /// Newton iterations.
-    pub iterations: usize,
-    /// Iterations of the linear solver; a direct solve counts none.
-    pub linear_iterations: usize,
-    /// Numeric factorisations.
-    pub factorisations: usize,
-    /// Symbolic analyses.
-    pub analyses: usize,
-    /// Halvings of a step that did not lower the potential.
-    pub halvings: usize,
-    /// Solved stages.
-    pub stages: usize,
-    /// Stages that stopped before they reached the tolerance.
-    pub unconverged: usize,
-    /// Largest velocity change of a last iteration (m/s).
-    pub residual: f64,
-    /// Time spent on forces and matrix assembly (s).
-    pub assembly_s: f64,
-    /// Time spent in the linear solver (s).
-    pub linear_s: f64,
-    /// Time spent on energies in the line search (s).
-    pub energy_s: f64,
-}
-
-impl SolveReport {
-    /// Adds another report.
-    pub fn add(&mut self, other: &SolveReport) {
-        self.iterations += other.iterations;
-        self.linear_iterations += other.linear_iterations;
-        self.factorisations += other.factorisations;
-        self.analyses += other.analyses;
-        self.halvings += other.halvings;
-        self.stages += other.stages;
-        self.unconverged += other.unconverged;
-        self.residual = self.residual.max(other.residual);
-        self.assembly_s += other.assembly_s;
-        self.linear_s += other.linear_s;
-        self.energy_s += other.energy_s;
-    }
-
-    fn note(&mut self, linear: &LinearReport) {
-        self.linear_iterations += linear.iterations;
-        self.factorisations += usize::from(linear.refactored);
-        self.analyses += usize::from(linear.analysed);
-    }
-}
-
-/// Why a step could not be made; the state is as before.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum SolveError {
-    /// Energies or forces overflowed.
-    #[error(
-        "the energy of the cloth is not finite at time {time} s: positions, velocities or \
-         stiffness are too large for the step of {h} s"
-    )]
-    NotFinite {
-        /// Time at the end of the stage (s).
-        time: f64,
-        /// Step of the stage (s).
-        h: f64,
-    },
-    /// Cloth is in the way of an obstacle or of a handle, and could not be moved out of it.
-    #[error("at time {time} s: the cloth is caught, with {left} of the way of obstacles left")]
-    Caught {
-        /// Time at the end of the stage (s).
-        time: f64,
-        /// Share of the way that obstacles have not gone (1).
-        left: f64,
-    },
-    /// The linear solver failed.
-    #[error("at time {time} s: {source}")]
-    Linear {
-        /// Time at the end of the stage (s).
-        time: f64,
-        /// What it said.
-        source: LinearError,
-    },
-}
 
 /// The stage to be solved: inertia and constraints.
 pub(crate) struct Inertia<'a> {
@@ -148,6 +51,8 @@ const WATCH: usize = 2;
 const SLOW: f64 = 0.3;
 /// The first iterations are never made with the exact Hessian: they are far from its validity.
 const PROJECTED_ITERATIONS: usize = 3;
+/// Share of the residual of a failed try with the exact Hessian at which it is tried again.
+const EXACT_AGAIN: f64 = 0.1;
 /// Stages that start at rest unasked after one that did so by choice.
 const REST_STARTS: u32 = 7;
 /// Iterations are allowed up to this multiple of the limit while triangles are out of their strain
@@ -185,8 +90,9 @@ struct Newton<'a> {
     trial: Vec<World3>,
     lowest: Watchdog,
     kind: Stiffness,
-    /// The exact Hessian was not positive definite.
-    exact_failed: bool,
+    /// Residual (m/s) at which the exact Hessian was last found not to be positive definite; infinite
+    /// if it was not.
+    exact_failed_at: f64,
     converged: bool,
     /// No descent is left within rounding.
     stuck: bool,
@@ -227,7 +133,7 @@ pub(crate) fn minimise(
         trial: vec![World3::zeros(); x.len()],
         lowest: Watchdog::default(),
         kind: Stiffness::Projected,
-        exact_failed: false,
+        exact_failed_at: f64::INFINITY,
         converged: false,
         stuck: false,
         left: if is_in_place { 0.0 } else { 1.0 },
@@ -328,7 +234,7 @@ impl Newton<'_> {
             Ok(linear) => linear,
             // Conjugate gradients cannot shift a matrix that is not positive definite.
             Err(_) if self.kind == Stiffness::Exact => {
-                self.exact_failed = true;
+                self.exact_failed_at = self.report.residual;
                 self.kind = Stiffness::Projected;
                 return Ok(());
             }
@@ -351,10 +257,14 @@ impl Newton<'_> {
 
         // Where cloth buckles, the projected Hessian is too stiff, and the last vertices would
         // creep; near the minimum the exact one is positive definite.
-        self.exact_failed |= shifted;
+        if shifted {
+            self.exact_failed_at = self.report.residual;
+        }
         let is_slow = self.kind == Stiffness::Exact || self.report.residual > SLOW * before;
         let is_near = self.report.iterations >= PROJECTED_ITERATIONS && is_full && is_lower;
-        let is_exact = is_slow && is_near && !self.exact_failed;
+        // Where it was not, it is tried again much nearer to the minimum.
+        let is_due = self.report.residual < EXACT_AGAIN * self.exact_failed_at;
+        let is_exact = is_slow && is_near && is_due;
         self.kind = if is_exact { Stiffness::Exact } else { Stiffness::Projected };
         Ok(())
     }

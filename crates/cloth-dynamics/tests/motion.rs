@@ -207,3 +207,29 @@ fn terminal_velocity() {
         assert!((-run.cloth.x[4].z / drop - 1.0).abs() < 2e-4, "{} {drop}", run.cloth.x[4].z);
     }
 }
+
+/// A sheet thrown at a plane never passes it, stays in one piece, and ends at rest just above it.
+#[test]
+fn a_sheet_comes_to_rest_on_a_plane() {
+    for (speed, h) in [(0.0, 0.01), (5.0, 0.01), (30.0, 0.02)] {
+        let mut cloth = sheet([0.2, 0.2], [6, 6], Diagonal::Alternating, 0.2);
+        let turn = nalgebra::Rotation3::from_euler_angles(0.3, 0.2, 0.0);
+        for x in &mut cloth.x {
+            *x = turn * *x + World3::new(0.0, 0.0, 0.1);
+        }
+        cloth.v.fill(World3::new(0.0, 0.0, -speed));
+        let mut run = Run::new(cloth, fabric(500.0, 1e-4, 0.2), &gravity());
+        let thickness = 0.005;
+        let plane = cloth_dynamics::PlaneContact::new(World3::zeros(), World3::z(), thickness);
+        run.system.set_contact(Box::new(plane));
+        run.settings.tolerance = 1e-4;
+        for _ in 0..200 {
+            run.step(&mut ImplicitEuler, h, &free);
+            assert!(run.cloth.x.iter().all(|x| x.z > 0.0), "speed {speed}");
+        }
+        let fastest = run.cloth.v.iter().map(|v| v.norm()).fold(0.0, f64::max);
+        let highest = run.cloth.x.iter().map(|x| x.z).fold(0.0, f64::max);
+        assert!(fastest < 2e-3, "speed {speed}: still {fastest} m/s");
+        assert!(highest < 1.2 * thickness, "speed {speed}: still at {highest} m");
+    }
+}

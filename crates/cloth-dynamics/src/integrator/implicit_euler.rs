@@ -1,7 +1,7 @@
 //! Implicit Euler: first order, strongly damped.
 
 use super::{StageStart, Step, TimeIntegrator, solve_stage};
-use crate::newton::{NewtonSettings, SolveError, SolveReport};
+use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
 use crate::solver::LinearSolver;
 use crate::system::{Constraints, System};
 use mesh_core::ClothState;

@@ -7,7 +7,8 @@ pub use implicit_euler::ImplicitEuler;
 pub use sdirk2::Sdirk2;
 
 use crate::force::Stage;
-use crate::newton::{Inertia, NewtonSettings, SolveError, SolveReport, minimise};
+use crate::newton::{Inertia, minimise};
+use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
 use crate::solver::LinearSolver;
 use crate::system::{Constraints, System};
 use mesh_core::{ClothState, World3};

@@ -12,7 +12,7 @@
 //! unlike BDF2 it carries no history across them.
 
 use super::{StageStart, Step, TimeIntegrator, solve_stage};
-use crate::newton::{NewtonSettings, SolveError, SolveReport};
+use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
 use crate::solver::LinearSolver;
 use crate::system::{Constraints, System};
 use mesh_core::{ClothState, World3};

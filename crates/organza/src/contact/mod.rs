@@ -9,7 +9,7 @@ mod slip;
 use crate::obstacle::Obstacle;
 use candidates::Candidates;
 use cloth_dynamics::Stage;
-use cloth_dynamics::contact::Contact;
+use cloth_dynamics::contact::{Contact, STIFFNESS, barrier};
 use cloth_dynamics::solver::BlockMatrix;
 use collision::{Body, Bvh, Pair, Surface, SurfaceError, ccd, swept};
 use mesh_core::{ClothState, World3, par};
@@ -67,9 +67,6 @@ impl Obstacles {
     }
 }
 
-/// Stiffness of a contact in units of mass over h²: what stops a vertex that moves at some d̂/h within
-/// the distance d̂.
-const STIFFNESS: f64 = 20.0;
 /// Share of the lowest height of the triangles around a vertex that its radius may have: parts of
 /// flat cloth are then not in contact with each other.
 const RADIUS_OF_HEIGHT: f64 = 0.2;
@@ -195,8 +192,7 @@ impl SurfaceContact {
         let before = moving.map(|moving| (moving.fixed.motion)(times[1] - stage.h));
         for sides in &self.near {
             let closest = sides.closest(&self.corners(sides, stage.x_t0));
-            let [_, slope, _] =
-                cloth_dynamics::contact::barrier(closest.distance, self.thickness(sides));
+            let [_, slope, _] = barrier(closest.distance, self.thickness(sides));
             let (mut mu, mut way) = (self.settings.friction, World3::zeros());
             if let (Some(moving), Some(before), true) = (moving, &before, !sides.is_within_cloth())
             {
@@ -342,13 +338,12 @@ impl Contact for SurfaceContact {
                     (0..4).filter(|&k| !sides.is_cloth[k]).map(way).sum()
                 }
                 // Cloth that runs into cloth takes it along.
-                _ => sides
-                    .vertices
-                    .map(|i| step[i as usize])
-                    .into_iter()
-                    .fold(World3::zeros(), |a, b| {
+                _ => sides.vertices.map(|i| step[i as usize]).into_iter().fold(
+                    World3::zeros(),
+                    |a, b| {
                         if a.norm_squared() >= b.norm_squared() { a } else { b }
-                    }),
+                    },
+                ),
             };
             for k in (0..4).filter(|&k| sides.is_cloth[k]) {
                 let slot = &mut carried[sides.vertices[k] as usize];
@@ -387,7 +382,7 @@ impl Contact for SurfaceContact {
         let pair = |k: usize| {
             let sides = &self.near[k];
             let distance = sides.closest(&self.corners(sides, x)).distance;
-            let [energy, ..] = cloth_dynamics::contact::barrier(distance, self.thickness(sides));
+            let [energy, ..] = barrier(distance, self.thickness(sides));
             if energy == 0.0 { 0.0 } else { energy * self.stiffness(sides) }
         };
         let repulsion = par::sum(self.near.len(), pair);
@@ -397,8 +392,7 @@ impl Contact for SurfaceContact {
     fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {
         for sides in &self.near {
             let closest = sides.closest(&self.corners(sides, x));
-            let [_, slope, curvature] =
-                cloth_dynamics::contact::barrier(closest.distance, self.thickness(sides));
+            let [_, slope, curvature] = barrier(closest.distance, self.thickness(sides));
             if slope < 0.0 {
                 let k = self.stiffness(sides);
                 let normal = closest.offset / closest.distance;

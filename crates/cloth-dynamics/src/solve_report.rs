@@ -1,0 +1,101 @@
+//! When a solve stops, what it did, and why it failed.
+
+use crate::solver::{LinearError, LinearReport};
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewtonSettings {
+    /// The most iterations, each one linear solve; up to three times as many while triangles are out
+    /// of their strain limits.
+    pub max_iterations: usize,
+    /// The stage is converged when no vertex would change its velocity by more than this (m/s).
+    pub tolerance: f64,
+}
+
+impl Default for NewtonSettings {
+    fn default() -> Self {
+        NewtonSettings { max_iterations: 30, tolerance: 1e-3 }
+    }
+}
+
+/// What a solve did. Sums over the stages of a step, and over steps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SolveReport {
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Iterations of the linear solver; a direct solve counts none.
+    pub linear_iterations: usize,
+    /// Numeric factorisations.
+    pub factorisations: usize,
+    /// Symbolic analyses.
+    pub analyses: usize,
+    /// Halvings of a step that did not lower the potential.
+    pub halvings: usize,
+    /// Solved stages.
+    pub stages: usize,
+    /// Stages that stopped before they reached the tolerance.
+    pub unconverged: usize,
+    /// Largest velocity change of a last iteration (m/s).
+    pub residual: f64,
+    /// Time spent on forces and matrix assembly (s).
+    pub assembly_s: f64,
+    /// Time spent in the linear solver (s).
+    pub linear_s: f64,
+    /// Time spent on energies in the line search (s).
+    pub energy_s: f64,
+}
+
+impl SolveReport {
+    /// Adds another report.
+    pub fn add(&mut self, other: &SolveReport) {
+        self.iterations += other.iterations;
+        self.linear_iterations += other.linear_iterations;
+        self.factorisations += other.factorisations;
+        self.analyses += other.analyses;
+        self.halvings += other.halvings;
+        self.stages += other.stages;
+        self.unconverged += other.unconverged;
+        self.residual = self.residual.max(other.residual);
+        self.assembly_s += other.assembly_s;
+        self.linear_s += other.linear_s;
+        self.energy_s += other.energy_s;
+    }
+
+    pub(crate) fn note(&mut self, linear: &LinearReport) {
+        self.linear_iterations += linear.iterations;
+        self.factorisations += usize::from(linear.refactored);
+        self.analyses += usize::from(linear.analysed);
+    }
+}
+
+/// Why a step could not be made; the state is as before.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SolveError {
+    /// Energies or forces overflowed.
+    #[error(
+        "the energy of the cloth is not finite at time {time} s: positions, velocities or \
+         stiffness are too large for the step of {h} s"
+    )]
+    NotFinite {
+        /// Time at the end of the stage (s).
+        time: f64,
+        /// Step of the stage (s).
+        h: f64,
+    },
+    /// Cloth is in the way of an obstacle or of a handle, and could not be moved out of it.
+    #[error("at time {time} s: the cloth is caught, with {left} of the way of obstacles left")]
+    Caught {
+        /// Time at the end of the stage (s).
+        time: f64,
+        /// Share of the way that obstacles have not gone (1).
+        left: f64,
+    },
+    /// The linear solver failed.
+    #[error("at time {time} s: {source}")]
+    Linear {
+        /// Time at the end of the stage (s).
+        time: f64,
+        /// What it said.
+        source: LinearError,
+    },
+}
