@@ -6,7 +6,8 @@
 use cloth_dynamics::law::{Bending, Membrane, NotPositive, Quadratic};
 use cloth_dynamics::solver::{BlockMatrix, PatternBuilder};
 use cloth_dynamics::{
-    BendingModel, Damping, Elements, Fabric, Force, MembraneModel, RestTriangle, ShapeOperatorModel,
+    BendingModel, Damping, Elements, Fabric, Force, MembraneModel, RestTriangle,
+    ShapeOperatorModel, Stiffness,
 };
 use mesh_core::ClothState;
 use mesh_core::generate::{Diagonal, grid};
@@ -66,7 +67,7 @@ impl Assembly {
         self.matrix.set_zero();
         self.gradient.fill(Vector3::zeros());
         for force in &self.forces {
-            force.add_system(&cloth.x, &mut self.gradient, &mut self.matrix);
+            force.add_system(&cloth.x, Stiffness::Projected, &mut self.gradient, &mut self.matrix);
         }
     }
 
