@@ -26,16 +26,19 @@ fn absent_parts_are_absent() {
     let mut bare = world("");
     assert_eq!(bare.force_names(), ["membrane", "bending", "gravity"]);
     let report = bare.advance().unwrap();
-    for stage in ["remeshing", "wind", "strain limits", "handles"] {
+    for stage in ["remeshing", "wind", "strain limits", "handles", "contact"] {
         assert!(report.skipped.iter().any(|s| s.contains(stage)), "{stage}: {:?}", report.skipped);
     }
     assert!(report.remesh.is_none());
     assert_eq!((report.seconds.sizing, report.seconds.remesh), (0.0, 0.0));
 
     let mut full = world(
-        r#"wind: { velocity: [1, 0, 0] }, handles: [{ select: { corners: ["lower-left"] } }],"#,
+        r#"wind: { velocity: [1, 0, 0] }, handles: [{ select: { corners: ["lower-left"] } }],
+           contact: {}, obstacles: [{ mesh: { sphere: { radius_m: 0.1 } },
+                                      transform: { translate: [0, 0, -1] } }],"#,
     );
-    assert_eq!(full.force_names(), ["membrane", "bending", "strain limits", "wind", "gravity"]);
+    let forces = ["membrane", "bending", "strain limits", "wind", "gravity", "contact"];
+    assert_eq!(full.force_names(), forces);
     let report = full.advance().unwrap();
     assert!(report.skipped.is_empty(), "{:?}", report.skipped);
     assert!(report.remesh.is_some());
