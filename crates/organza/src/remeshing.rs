@@ -77,7 +77,7 @@ impl Remeshing {
         Remeshing { sizing: Box::new(field(self.sizing)), ..self }
     }
 
-    /// Remeshes, by splits alone if the surface is to be kept; returns what was done and the seconds
+    /// Remeshes, around the vertices `hold` by splits alone; returns what was done and the seconds
     /// spent on sizing and on edits.
     ///
     /// # Errors
@@ -86,7 +86,7 @@ impl Remeshing {
         &self,
         cloth: &mut ClothState,
         keep: &[u64],
-        keep_surface: bool,
+        hold: &[u64],
     ) -> Result<(RemeshReport, [f64; 2]), RemeshError> {
         let settings = RemeshSettings {
             aspect_min: self.aspect_min,
@@ -95,7 +95,7 @@ impl Remeshing {
             keep,
             fixed_panels: &self.fixed_panels,
             stretch_limits: &self.stretch_limits,
-            keep_surface,
+            hold,
             obstacle: None,
         };
         let clock = Instant::now();

@@ -113,6 +113,8 @@ enum PrepareError {
     Surface(#[from] SurfaceError),
 }
 
+/// How often remeshing is made again around places where it took cloth through something.
+const HOLD_ROUNDS: u32 = 4;
 /// How often a failing step is halved before the run ends.
 const MAX_HALVINGS: u32 = 6;
 
@@ -232,15 +234,27 @@ impl World {
             let keep = self.handles.names();
             let error = |source| StepError::Remesh { frame, source };
             let saved = self.contact.is_some().then(|| self.cloth.clone());
-            let (mut report, mut times) =
-                remeshing.run(&mut self.cloth, &keep, false).map_err(error)?;
-            if let Some(saved) = saved
-                && report.n_edits() > 0
-                && self.crossings(frame).is_some()
-            {
-                // Flips and collapses took the surface through something: splits cannot.
-                self.cloth = saved;
-                (report, times) = remeshing.run(&mut self.cloth, &keep, true).map_err(error)?;
+            let run = |cloth: &mut ClothState, hold: &[u64]| {
+                remeshing.run(cloth, &keep, hold).map_err(error)
+            };
+            let (mut report, mut times) = run(&mut self.cloth, &[])?;
+            if let Some(saved) = saved {
+                // Where flips and collapses took cloth through something, only splits are made next
+                // time; in the end, everywhere.
+                let mut hold = Vec::new();
+                for round in 0..=HOLD_ROUNDS {
+                    let Some(crossings) =
+                        (report.n_edits() > 0).then(|| self.crossings(frame)).flatten()
+                    else {
+                        break;
+                    };
+                    self.cloth = saved.clone();
+                    hold.extend(crossings.vertices_near(&self.cloth));
+                    if round == HOLD_ROUNDS {
+                        hold = self.cloth.mesh.uids().to_vec();
+                    }
+                    (report, times) = run(&mut self.cloth, &hold)?;
+                }
             }
             if report.n_edits() > 0 {
                 self.prepared = None;

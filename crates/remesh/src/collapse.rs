@@ -77,6 +77,7 @@ impl Driver<'_> {
         self.metrics.follow_collapse(removed, triangles, &moved);
         self.journal.push(edit);
         self.kept.swap_remove(removed.index());
+        self.held.swap_remove(removed.index());
         touched.extend(ring.iter().map(|v| names.local_of[v.index()]));
         let local_kept = names.local_of[kept.index()];
         names.remove(removed);
@@ -110,6 +111,9 @@ impl Driver<'_> {
     fn examine(&self, v: VertexId, with_topology: bool) -> Verdict {
         let mesh = &self.cloth.mesh;
         if self.kept[v.index()] {
+            return None;
+        }
+        if self.held[v.index()] || mesh.neighbours(v).any(|i| self.held[i.index()]) {
             return None;
         }
         let star = Star::of(mesh, v);

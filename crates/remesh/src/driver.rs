@@ -5,7 +5,7 @@ use crate::field::SizingField;
 use crate::quality::MeshQuality;
 use crate::report::RemeshReport;
 use crate::settings::{RemeshError, RemeshSettings};
-use mesh_core::{ClothState, Edit, HalfEdge, TriangleId, par};
+use mesh_core::{ClothState, Edit, HalfEdge, Mesh, TriangleId, par};
 
 /// Adapts the mesh to a sizing field (Narain2012 §4): evaluates the field once on every triangle,
 /// then [`adapt`]s.
@@ -48,13 +48,9 @@ pub fn adapt(
         return Err(RemeshError::Stale { expected, got });
     }
     let mut driver = Driver::new(cloth, metrics, settings);
-    if settings.keep_surface {
-        driver.split_invalid();
-    } else {
-        driver.flip_all();
-        driver.split_invalid();
-        driver.collapse_all();
-    }
+    driver.flip_all();
+    driver.split_invalid();
+    driver.collapse_all();
     Ok(driver.finish())
 }
 
@@ -65,6 +61,8 @@ pub(crate) struct Driver<'a> {
     pub(crate) settings: &'a RemeshSettings<'a>,
     /// Vertices that must not be removed.
     pub(crate) kept: Vec<bool>,
+    /// Vertices around which edges are only split.
+    pub(crate) held: Vec<bool>,
     /// Panels that must not be touched; empty if there are none.
     fixed: Vec<bool>,
     pub(crate) journal: Vec<Edit>,
@@ -79,19 +77,24 @@ pub(crate) struct Driver<'a> {
     pub(crate) vertex_limit_reached: bool,
 }
 
+/// Which vertices have one of these names.
+fn marked(mesh: &Mesh, names: &[u64]) -> Vec<bool> {
+    if names.is_empty() {
+        return vec![false; mesh.n_vertices()];
+    }
+    let mut names = names.to_vec();
+    names.sort_unstable();
+    mesh.uids().iter().map(|uid| names.binary_search(uid).is_ok()).collect()
+}
+
 impl<'a> Driver<'a> {
     fn new(
         cloth: &'a mut ClothState,
         metrics: &'a mut CornerMetrics,
         settings: &'a RemeshSettings<'a>,
     ) -> Self {
-        let mut keep = settings.keep.to_vec();
-        keep.sort_unstable();
-        let kept = if keep.is_empty() {
-            vec![false; cloth.mesh.n_vertices()]
-        } else {
-            cloth.mesh.uids().iter().map(|uid| keep.binary_search(uid).is_ok()).collect()
-        };
+        let kept = marked(&cloth.mesh, settings.keep);
+        let held = marked(&cloth.mesh, settings.hold);
         let mut fixed = Vec::new();
         if !settings.fixed_panels.is_empty() {
             fixed = vec![false; cloth.densities().len()];
@@ -106,6 +109,7 @@ impl<'a> Driver<'a> {
             metrics,
             settings,
             kept,
+            held,
             fixed,
             journal: Vec::new(),
             sizes: Vec::new(),

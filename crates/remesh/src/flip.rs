@@ -101,9 +101,6 @@ impl Driver<'_> {
     /// triangles that changed.
     pub(crate) fn settle(&mut self) {
         self.flipped.clear();
-        if self.settings.keep_surface {
-            self.flip_queue.clear();
-        }
         while let Some(h) = self.flip_queue.pop() {
             if !self.wants_flip(h) {
                 continue;
@@ -166,6 +163,9 @@ impl Driver<'_> {
     fn flip_is_admissible(&self, h: HalfEdge, g: HalfEdge, quad: &[Material2; 4]) -> bool {
         let mesh = &self.cloth.mesh;
         if (self.metrics.may_be_line(mesh, h) && mesh.is_feature(h)) || self.is_locked(h) {
+            return false;
+        }
+        if [h, g, h.prev(), g.prev()].into_iter().any(|e| self.held[mesh.origin(e).index()]) {
             return false;
         }
         let [a, b, c, d] = *quad;

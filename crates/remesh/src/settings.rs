@@ -23,9 +23,10 @@ pub struct RemeshSettings<'a> {
     /// sides of 1: an edit that would strain a triangle further is refused, unless one of those it
     /// replaces was strained as much. Panels beyond the end of the slice are not limited.
     pub stretch_limits: &'a [[f64; 2]],
-    /// Only splits, which leave the surface where it is: for cloth in tight places, where a flip or a
-    /// collapse could take it through something.
-    pub keep_surface: bool,
+    /// Names of vertices around which edges are only split, which leaves the surface where it is: for
+    /// tight places, where a flip or a collapse could take cloth through something. Names that do not
+    /// exist are ignored.
+    pub hold: &'a [u64],
     /// Metric wanted for the proximity of obstacles, one per triangle (1/m²); handed to the sizing
     /// field.
     pub obstacle: Option<&'a [Metric]>,
@@ -40,7 +41,7 @@ impl Default for RemeshSettings<'_> {
             keep: &[],
             fixed_panels: &[],
             stretch_limits: &[],
-            keep_surface: false,
+            hold: &[],
             obstacle: None,
         }
     }

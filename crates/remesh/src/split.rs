@@ -3,7 +3,7 @@
 use crate::driver::Driver;
 use crate::quality::LARGEST_SIZE_SQUARED;
 use mesh_core::geometry::aspect;
-use mesh_core::{HalfEdge, TriangleId};
+use mesh_core::{HalfEdge, TriangleId, VertexId};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
@@ -41,6 +41,9 @@ impl Driver<'_> {
         let Ok(edit) = self.cloth.split(h) else { return };
         self.metrics.follow_split(h, g, on_line);
         self.kept.push(false);
+        let new = VertexId(self.held.len() as u32);
+        let is_held = self.cloth.mesh.neighbours(new).any(|i| self.held[i.index()]);
+        self.held.push(is_held);
         self.journal.push(edit);
 
         // Halves, spokes and the outer edges, of which those of the new triangles are renumbered.

@@ -174,3 +174,44 @@ fn garments_from_the_generator() {
     let one = flat(&[[0.0, 0.0], [1.0, 0.0], [0.3, 0.8]], &[[0, 1, 2]]);
     assert_eq!(run(&mut one.clone(), &Uniform { size: 2.0 }).n_edits(), 0);
 }
+
+/// Around held vertices the surface stays where it is, whatever is wished.
+#[test]
+fn around_held_vertices_edges_are_only_split() {
+    let start = stir(grid([1.0, 1.0], [8, 8], Diagonal::Alternating));
+    let on_start = |u: Material2| -> World3 {
+        for (corners, t) in start.mesh.triangles().iter().zip(start.mesh.triangle_ids()) {
+            let m = start.mesh.material()[t.index()];
+            let g = mesh_core::geometry::inverse_edges(m);
+            let w = g * (u - m[0]);
+            if w.x >= -1e-9 && w.y >= -1e-9 && w.x + w.y <= 1.0 + 1e-9 {
+                let [a, b, c] = corners.map(|i| start.x[i as usize]);
+                return a + (b - a) * w.x + (c - a) * w.y;
+            }
+        }
+        panic!("{u:?} is not on the sheet");
+    };
+    let left = |x: &World3| x.x < 0.4;
+    let names = start.mesh.uids().iter().zip(&start.x);
+    let held: Vec<u64> = names.filter(|(_, x)| left(x)).map(|(uid, _)| *uid).collect();
+    for size in [0.05, 0.5] {
+        let mut cloth = start.clone();
+        let settings = RemeshSettings { hold: &held, ..RemeshSettings::default() };
+        let report = remesh(&mut cloth, &Uniform { size }, &settings).unwrap();
+        let is_coarser = report.n_collapses > 0;
+        assert_eq!(is_coarser, size > 0.1, "the other side is free");
+        assert!(held.iter().all(|uid| cloth.mesh.uids().contains(uid)));
+        for (corners, u) in cloth.mesh.triangles().iter().zip(cloth.mesh.material()) {
+            if corners.iter().any(|&i| held.contains(&cloth.mesh.uids()[i as usize])) {
+                let x: World3 = corners.iter().map(|&i| cloth.x[i as usize]).sum();
+                let place = on_start((u[0] + u[1] + u[2]) / 3.0);
+                assert!((x / 3.0 - place).norm() < 1e-12, "size {size}");
+            }
+        }
+        let all = start.mesh.uids().to_vec();
+        let mut cloth = start.clone();
+        let settings = RemeshSettings { hold: &all, ..RemeshSettings::default() };
+        let report = remesh(&mut cloth, &Uniform { size }, &settings).unwrap();
+        assert_eq!((report.n_flips, report.n_collapses), (0, 0));
+    }
+}
