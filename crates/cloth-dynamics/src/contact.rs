@@ -16,6 +16,7 @@ pub trait Contact: Send + Sync {
 
     /// A stage begins: takes what it lags, and where obstacles are to go. The positions `x_t0` of the
     /// stage belong to the first time, its end is the second (s); masses are those of the vertices (kg).
+    /// The energy at `x_t0` may be asked for without looking ahead first.
     fn begin(&mut self, stage: Stage<'_>, times: [f64; 2], mass: &[f64]);
 
     /// Finds what may come close on the way from `x` by `step` (m), while obstacles go where they are

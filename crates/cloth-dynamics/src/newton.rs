@@ -58,7 +58,6 @@ const REST_STARTS: u32 = 7;
 /// Iterations are allowed up to this multiple of the limit while triangles are out of their strain
 /// limits.
 const LIMIT_PATIENCE: usize = 3;
-
 /// The same, while obstacles have not arrived where they are to be.
 const ARRIVAL_PATIENCE: usize = 6;
 /// How often what is in the way of obstacles is looked for, to go along with them.
@@ -196,13 +195,10 @@ fn choose_start(
 
 /// The start of a stage with contact: where the cloth is, handles and obstacles included.
 fn start_in_contact(
-    system: &mut System,
+    system: &System,
     inertia: &Inertia<'_>,
 ) -> Result<(Vec<World3>, f64), SolveError> {
     let x = inertia.x_t0.to_vec();
-    if let Some(contact) = &mut system.contact {
-        contact.look_ahead(&x, &vec![World3::zeros(); x.len()]);
-    }
     let phi = inertia.potential(system, &x);
     if phi.is_finite() {
         Ok((x, phi))

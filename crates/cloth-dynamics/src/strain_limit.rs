@@ -72,13 +72,40 @@ pub fn principal_stretches(f: &Matrix3x2<f64>) -> ([f64; 2], Matrix2<f64>) {
     ([high, low], Matrix2::new(x, -y, y, x))
 }
 
-/// Strain limits of all triangles whose fabric has them.
-#[derive(Debug)]
-pub struct StrainLimitModel {
-    stencils: Vec<[u32; 3]>,
+/// The triangles whose fabric has limits.
+#[derive(Clone, Debug)]
+pub(crate) struct Limited {
+    pub(crate) stencils: Vec<[u32; 3]>,
     triangles: Vec<u32>,
     rest: Arc<Vec<RestTriangle>>,
     fabrics: Arc<Vec<Fabric>>,
+}
+
+impl Limited {
+    /// Those among the given triangles; `None` if there are none.
+    pub(crate) fn new(
+        triangles: &[[u32; 3]],
+        rest: Arc<Vec<RestTriangle>>,
+        fabrics: Arc<Vec<Fabric>>,
+    ) -> Option<Self> {
+        let limited: Vec<u32> = (0..rest.len() as u32)
+            .filter(|&t| fabrics[rest[t as usize].panel as usize].strain_limits.is_some())
+            .collect();
+        let stencils = limited.iter().map(|&t| triangles[t as usize]).collect();
+        (!limited.is_empty()).then_some(Limited { stencils, triangles: limited, rest, fabrics })
+    }
+
+    pub(crate) fn element(&self, e: usize) -> (&RestTriangle, &StrainLimits) {
+        let rest = &self.rest[self.triangles[e] as usize];
+        let limits = self.fabrics[rest.panel as usize].strain_limits.as_ref();
+        (rest, limits.expect("only limited triangles are listed"))
+    }
+}
+
+/// Strain limits of all triangles whose fabric has them.
+#[derive(Debug)]
+pub struct StrainLimitModel {
+    limited: Limited,
     /// The last step (m) and where it began, from which follow the predicted stretches for the
     /// geometric part of the projected stiffness; see [`MembraneModel`](crate::MembraneModel).
     from: Vec<World3>,
@@ -92,31 +119,15 @@ impl StrainLimitModel {
         rest: Arc<Vec<RestTriangle>>,
         fabrics: Arc<Vec<Fabric>>,
     ) -> Option<Self> {
-        let limited: Vec<u32> = (0..rest.len() as u32)
-            .filter(|&t| fabrics[rest[t as usize].panel as usize].strain_limits.is_some())
-            .collect();
-        let stencils = limited.iter().map(|&t| triangles[t as usize]).collect();
-        (!limited.is_empty()).then_some(StrainLimitModel {
-            stencils,
-            from: Vec::new(),
-            step: Vec::new(),
-            triangles: limited,
-            rest,
-            fabrics,
-        })
-    }
-
-    fn element(&self, e: usize) -> (&RestTriangle, &StrainLimits) {
-        let rest = &self.rest[self.triangles[e] as usize];
-        let limits = self.fabrics[rest.panel as usize].strain_limits.as_ref();
-        (rest, limits.expect("only limited triangles are listed"))
+        let limited = Limited::new(triangles, rest, fabrics)?;
+        Some(StrainLimitModel { limited, from: Vec::new(), step: Vec::new() })
     }
 }
 
 impl StrainLimitModel {
     /// Principal stretches by the linear prediction of the last step (1).
     fn predicted(&self, e: usize) -> [f64; 2] {
-        let (rest, stencil) = (self.element(e).0, self.stencils[e]);
+        let (rest, stencil) = (self.limited.element(e).0, self.limited.stencils[e]);
         let f = rest.deformation_gradient(&stencil.map(|i| self.from[i as usize]));
         let df = rest.deformation_gradient(&stencil.map(|i| self.step[i as usize]));
         let (sigma, v) = principal_stretches(&f);
@@ -146,7 +157,7 @@ impl ElementModel<3> for StrainLimitModel {
     }
 
     fn stencils(&self) -> &[[u32; 3]] {
-        &self.stencils
+        &self.limited.stencils
     }
 
     fn begin(&mut self, stage: Stage<'_>) {
@@ -162,7 +173,7 @@ impl ElementModel<3> for StrainLimitModel {
     }
 
     fn energy(&self, e: usize, x: &[World3; 3]) -> f64 {
-        let (rest, limits) = self.element(e);
+        let (rest, limits) = self.limited.element(e);
         let f = rest.deformation_gradient(x);
         if is_free(limits, &f) {
             return 0.0;
@@ -180,7 +191,7 @@ impl ElementModel<3> for StrainLimitModel {
     /// The eigenvectors of the Hessian of an isotropic energy are known (Smith2019): the two
     /// stretches, a twist and a flip in the plane, and the two tilts out of it.
     fn system(&self, e: usize, x: &[World3; 3], kind: Stiffness, out: &mut ElementSystem<3>) {
-        let (rest, limits) = self.element(e);
+        let (rest, limits) = self.limited.element(e);
         let f = rest.deformation_gradient(x);
         out.active = !is_free(limits, &f);
         if !out.active {

@@ -9,7 +9,7 @@
 
 use crate::fabric::{Fabric, StrainLimits};
 use crate::rest::RestTriangle;
-use crate::strain_limit::{is_free, orthonormal, principal_stretches};
+use crate::strain_limit::{Limited, is_free, orthonormal, principal_stretches};
 use mesh_core::{World3, par};
 use nalgebra::Matrix2;
 use std::sync::Arc;
@@ -53,13 +53,10 @@ impl Incidence {
     }
 }
 
-/// The triangles that have limits.
+/// The projection of all triangles that have limits.
 #[derive(Debug)]
 pub(crate) struct StrainProjection {
-    stencils: Vec<[u32; 3]>,
-    triangles: Vec<u32>,
-    rest: Arc<Vec<RestTriangle>>,
-    fabrics: Arc<Vec<Fabric>>,
+    limited: Limited,
     /// Made when it is first needed.
     incidence: Option<Incidence>,
 }
@@ -71,23 +68,8 @@ impl StrainProjection {
         rest: Arc<Vec<RestTriangle>>,
         fabrics: Arc<Vec<Fabric>>,
     ) -> Option<Self> {
-        let limited: Vec<u32> = (0..rest.len() as u32)
-            .filter(|&t| fabrics[rest[t as usize].panel as usize].strain_limits.is_some())
-            .collect();
-        let stencils = limited.iter().map(|&t| triangles[t as usize]).collect();
-        (!limited.is_empty()).then_some(StrainProjection {
-            stencils,
-            triangles: limited,
-            rest,
-            fabrics,
-            incidence: None,
-        })
-    }
-
-    fn element(&self, e: usize) -> (&RestTriangle, &StrainLimits) {
-        let rest = &self.rest[self.triangles[e] as usize];
-        let limits = self.fabrics[rest.panel as usize].strain_limits.as_ref();
-        (rest, limits.expect("only limited triangles are listed"))
+        let limited = Limited::new(triangles, rest, fabrics)?;
+        Some(StrainProjection { limited, incidence: None })
     }
 
     /// Brings triangles that are out of bounds back, by moving their vertices; `mass` is infinite
@@ -99,14 +81,16 @@ impl StrainProjection {
         if todo.is_empty() {
             return None;
         }
-        let incidence =
-            self.incidence.take().unwrap_or_else(|| Incidence::new(&self.stencils, x.len()));
+        let incidence = self
+            .incidence
+            .take()
+            .unwrap_or_else(|| Incidence::new(&self.limited.stencils, x.len()));
         let mut moved = Vec::new();
         for _ in 0..MAX_SWEEPS {
             moved.clear();
             for &e in &todo {
                 if self.project_one(e as usize, x, mass) {
-                    moved.extend(self.stencils[e as usize]);
+                    moved.extend(self.limited.stencils[e as usize]);
                 }
             }
             if moved.is_empty() {
@@ -123,10 +107,10 @@ impl StrainProjection {
 
     /// Elements whose stretches are out of bounds.
     fn out_of_bounds(&self, x: &[World3]) -> Vec<u32> {
-        let mut marks = vec![false; self.stencils.len()];
+        let mut marks = vec![false; self.limited.stencils.len()];
         par::fill(&mut marks, |e| {
-            let (rest, limits) = self.element(e);
-            let f = rest.deformation_gradient(&self.stencils[e].map(|i| x[i as usize]));
+            let (rest, limits) = self.limited.element(e);
+            let f = rest.deformation_gradient(&self.limited.stencils[e].map(|i| x[i as usize]));
             !is_free(limits, &f) && is_out(limits, principal_stretches(&f).0)
         });
         (0..).zip(marks).filter(|(_, is_marked)| *is_marked).map(|(e, _)| e).collect()
@@ -134,8 +118,8 @@ impl StrainProjection {
 
     /// Brings one triangle back; false if it was in bounds, or cannot move.
     fn project_one(&self, e: usize, x: &mut [World3], mass: &dyn Fn(u32) -> f64) -> bool {
-        let (rest, limits) = self.element(e);
-        let corners = self.stencils[e];
+        let (rest, limits) = self.limited.element(e);
+        let corners = self.limited.stencils[e];
         let m = corners.map(mass);
         let is_held = m.map(f64::is_infinite);
         if is_held == [true; 3] {

@@ -138,7 +138,6 @@ fn a_sheet_drapes_over_a_ball_and_nothing_crosses() {
     let x = &run.cloth.x;
     let (low, high) =
         x.iter().map(|x| x.z).fold((1.0, -1.0), |(l, h): (f64, f64), z| (l.min(z), h.max(z)));
-    eprintln!("{low} {high} {:?}", run.report);
     assert!(low < 0.0 && low > -0.3, "the corners hang down: {low} m");
     assert!(high > 0.1 && high < 0.1 + 2.0 * THICKNESS, "the top rests on the ball: {high} m");
 }
@@ -159,7 +158,6 @@ fn a_fast_ball_does_not_pass_through_a_hanging_sheet() {
     let mut run = Run::new(cloth, Some(ball(0.1, 0.3, way)), 0.3);
     let held = move |_: f64| Constraints { fixed: fixed.clone(), springs: Vec::new() };
     run.steps(120, 0.005, &held);
-    eprintln!("{:?}", run.report);
 }
 
 /// A sheet laid double in mid air, one half above the other, falls on a ball: layers stay apart.
@@ -184,7 +182,6 @@ fn layers_of_one_sheet_do_not_cross() {
     let cloth = ClothState::at_rest(sheet.mesh, x.collect(), vec![cotton().density]).unwrap();
     let mut run = Run::new(cloth, Some(ball(0.1, 0.5, |_| World3::zeros())), 0.3);
     run.steps(100, 0.01, &free);
-    eprintln!("{:?}", run.report);
 }
 
 /// An inclined plane: cloth slides where tan θ > μ and stays where tan θ < μ.
@@ -214,7 +211,6 @@ fn cloth_slips_on_an_incline_where_the_angle_of_friction_is_passed() {
             run.steps(n, 0.01, &free);
             let way = (centre(&run) - start).norm();
             let speed = way / (n as f64 * 0.01);
-            eprintln!("mu {mu} share {share}: {speed} m/s");
             // Creep below the sticking speed is what smoothed friction has instead of rest.
             assert_eq!(speed > 2e-3, slides, "μ {mu}, tan θ/μ {share}: {speed} m/s");
         }
