@@ -62,7 +62,11 @@ impl SurfaceContact {
                 dirty = None;
             }
             let mut hits = self.hits(x_t0, x, dirty.as_deref());
+            if std::env::var("DBG").is_ok() && round > 0 {
+                eprintln!("round {round}: {} hits, searches {}", hits.len(), self.n_searches - n_searches);
+            }
             let Some(first) = hits.first() else {
+                if std::env::var("DBG").is_ok() { eprintln!("searches {} touches {}", self.n_searches, self.touches.len()); self.n_searches = 0; }
                 return Ok(changed.iter().filter(|&&changed| changed).count());
             };
             let blocked = Blocked { place: self.corners_now(&first.sides, x_t0)[0] };
@@ -102,13 +106,12 @@ impl SurfaceContact {
             }
             let (from, to) = (self.corners_now(sides, x_t0), self.corners_then(sides, x));
             let motion = sides.relative_motion(&from, &to);
-            let thickness = self.thickness(sides);
             // What is known of the distance without working it out again.
             let distance = match self.distances.get(k) {
                 Some(&distance) => distance,
                 None => sides.closest(&from).distance,
             };
-            let gap = thickness.min(distance);
+            let gap = sides.thickness.min(distance);
             if distance - motion > CLEAR * gap {
                 return;
             }

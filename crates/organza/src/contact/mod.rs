@@ -6,6 +6,7 @@ mod crossings;
 mod impact;
 mod obstacles;
 mod pair;
+mod rest;
 mod search;
 mod slip;
 mod touch;
@@ -18,6 +19,7 @@ use collision::{Aabb, Bvh, Surface, SurfaceError};
 use mesh_core::{ClothState, World3, par};
 use obstacles::Moving;
 use pair::{ClosestPoints, Sides};
+use rest::RestSheet;
 use slip::Slip;
 use std::collections::HashSet;
 use touch::{Touch, approach};
@@ -36,9 +38,6 @@ pub struct ContactSettings {
     pub self_contact: bool,
 }
 
-/// Share of the lowest height of the triangles around a vertex that its radius may have: parts of
-/// flat cloth are then not in contact with each other.
-const RADIUS_OF_HEIGHT: f64 = 0.2;
 /// Share of the thickness below which a gap that no energy keeps open is worth one.
 const OVERLOOKED: f64 = 0.5;
 /// Speed below which things stick (m/s).
@@ -48,8 +47,7 @@ const STICK: f64 = 1e-3;
 pub struct SurfaceContact {
     settings: ContactSettings,
     cloth: Surface,
-    /// Half the thickness around each vertex of the cloth (m).
-    radius: Vec<f64>,
+    rest: RestSheet,
     cloth_tree: Bvh,
     obstacles: Option<Moving>,
     /// All that may matter for a while.
@@ -61,8 +59,12 @@ pub struct SurfaceContact {
     slips: Vec<Slip>,
     /// Mass over h² by vertex (N/m).
     inertia: Vec<f64>,
-    /// Where the stage starts (m).
+    /// Where the stage starts, and where it would end without forces (m).
     x_t0: Vec<World3>,
+    target: Vec<World3>,
+    /// By what the last stage of length `h` (s) ended off its target (m).
+    off_target: Vec<World3>,
+    h: f64,
 }
 
 impl SurfaceContact {
@@ -78,7 +80,7 @@ impl SurfaceContact {
         Ok(SurfaceContact {
             settings,
             cloth: Surface::new(cloth.mesh.n_vertices(), cloth.mesh.triangles())?,
-            radius: radii(cloth, 0.5 * settings.thickness),
+            rest: RestSheet::new(cloth),
             cloth_tree: Bvh::build(0, |_| Aabb::EMPTY),
             obstacles: obstacles.map(Moving::new),
             candidates: Candidates::default(),
@@ -88,6 +90,9 @@ impl SurfaceContact {
             slips: Vec::new(),
             inertia: Vec::new(),
             x_t0: Vec::new(),
+            target: Vec::new(),
+            off_target: Vec::new(),
+            h: 0.0,
         })
     }
 
@@ -101,21 +106,6 @@ impl SurfaceContact {
         sides.corners(x, self.obstacles.as_ref().map_or(&[], |moving| &moving.then))
     }
 
-    /// Distance below which the things of a pair repel each other (m).
-    fn thickness(&self, sides: &Sides) -> f64 {
-        let radius = |k: usize| {
-            if sides.is_cloth[k] {
-                self.radius[sides.vertices[k] as usize]
-            } else {
-                0.5 * self.settings.thickness
-            }
-        };
-        let largest = |side: bool| {
-            (0..4).filter(|&k| sides.is_first[k] == side).map(radius).fold(0.0, f64::max)
-        };
-        largest(true) + largest(false)
-    }
-
     /// Stiffness of a pair (N/m).
     fn stiffness(&self, sides: &Sides) -> f64 {
         let cloth = (0..4).filter(|&k| sides.is_cloth[k]);
@@ -125,7 +115,7 @@ impl SurfaceContact {
 
     /// The contact of a pair on the way to `x`, if it comes near on it.
     fn touch(&self, sides: &Sides, start: ClosestPoints, x: &[World3]) -> Option<Touch> {
-        let thickness = self.thickness(sides);
+        let thickness = sides.thickness;
         let (from, to) = (self.corners_now(sides, &self.x_t0), self.corners_then(sides, x));
         let closest = approach(sides, [&from, &to], start, thickness)?;
         // The distance to the end of an edge is that of a vertex, which has a pair of its own.
@@ -144,7 +134,7 @@ impl SurfaceContact {
         }
         let before = moving.map(|moving| (moving.fixed.motion)(times[1] - stage.h));
         for (sides, closest) in near {
-            let [_, slope, _] = barrier(closest.distance, self.thickness(sides));
+            let [_, slope, _] = barrier(closest.distance, sides.thickness);
             let (mut mu, mut way) = (self.settings.friction, World3::zeros());
             if let (Some(moving), Some(before), true) = (moving, &before, !sides.is_within_cloth())
             {
@@ -164,23 +154,6 @@ impl SurfaceContact {
     }
 }
 
-/// Radii of the vertices: `most`, but less where the mesh is fine (m).
-fn radii(cloth: &ClothState, most: f64) -> Vec<f64> {
-    let mesh = &cloth.mesh;
-    let lowest = |t: mesh_core::TriangleId| {
-        let edges = [0, 1, 2].map(|k| mesh.material_edge(t.half_edge(k)).norm());
-        2.0 * mesh.area(t) / edges.into_iter().fold(0.0, f64::max)
-    };
-    let mut radii = vec![most; mesh.n_vertices()];
-    for (t, corners) in mesh.triangle_ids().zip(mesh.triangles()) {
-        let radius = RADIUS_OF_HEIGHT * lowest(t);
-        for &i in corners {
-            radii[i as usize] = radii[i as usize].min(radius);
-        }
-    }
-    radii
-}
-
 impl Contact for SurfaceContact {
     fn name(&self) -> &'static str {
         "contact"
@@ -194,14 +167,22 @@ impl Contact for SurfaceContact {
         if let Some(moving) = &mut self.obstacles {
             moving.go_to(times);
         }
-        self.cover(stage.x_t0, target);
+        // Forces change little from one stage to the next.
+        if self.h != stage.h {
+            self.off_target.clear();
+        }
+        self.h = stage.h;
+        self.target = target.to_vec();
+        let mut target = target.to_vec();
+        target.iter_mut().zip(&self.off_target).for_each(|(target, off)| *target += off);
+        self.cover(stage.x_t0, &target);
         let pairs = &self.candidates.pairs;
         let mut found = vec![(0.0, None, None); pairs.len()];
         par::fill(&mut found, |k| {
             let sides = &pairs[k];
             let start = sides.closest(&self.corners_now(sides, stage.x_t0));
-            let (distance, thickness) = (start.distance, self.thickness(sides));
-            let touch = self.touch(sides, start.clone(), target);
+            let (distance, thickness) = (start.distance, sides.thickness);
+            let touch = self.touch(sides, start, &target);
             let is_near = touch.is_some() && distance < thickness;
             (distance, touch, is_near.then_some((*sides, start)))
         });
@@ -239,7 +220,7 @@ impl Contact for SurfaceContact {
         let more = par::collect(pairs.len(), |k, more| {
             let sides = &pairs[k];
             let (from, to) = (self.corners_now(sides, &self.x_t0), self.corners_then(sides, x));
-            let thickness = OVERLOOKED * self.thickness(sides);
+            let thickness = OVERLOOKED * sides.thickness;
             let motion = sides.relative_motion(&from, &to);
             if self.distances.get(k).is_some_and(|distance| distance - motion > thickness) {
                 return;
@@ -256,7 +237,9 @@ impl Contact for SurfaceContact {
     }
 
     fn secure(&mut self, x: &mut [World3], fixed: &[bool]) -> Result<usize, Blocked> {
-        self.free_way(x, fixed)
+        let n_moved = self.free_way(x, fixed)?;
+        self.off_target = x.iter().zip(&self.target).map(|(x, target)| x - target).collect();
+        Ok(n_moved)
     }
 
     fn n_touches(&self) -> usize {

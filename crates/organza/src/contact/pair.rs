@@ -15,6 +15,8 @@ pub(super) struct Sides {
     /// Which are the cloth's.
     pub(super) is_cloth: [bool; 4],
     pub(super) is_edges: bool,
+    /// Distance below which they repel each other (m).
+    pub(super) thickness: f64,
 }
 
 /// The closest points of a pair.
@@ -26,7 +28,12 @@ pub(super) struct ClosestPoints {
 }
 
 impl Sides {
-    pub(super) fn new(pair: Pair, vertices: [u32; 4], within_cloth: bool) -> Sides {
+    pub(super) fn new(
+        pair: Pair,
+        vertices: [u32; 4],
+        within_cloth: bool,
+        thickness: f64,
+    ) -> Sides {
         let of_first = pair.of_first();
         let is_edges = pair.kind == PairKind::EdgeEdge;
         let front = if is_edges { 2 } else { 1 };
@@ -35,6 +42,7 @@ impl Sides {
             is_first: std::array::from_fn(|k| k < front),
             is_cloth: of_first.map(|is_first| within_cloth || is_first),
             is_edges,
+            thickness,
         }
     }
 

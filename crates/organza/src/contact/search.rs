@@ -27,8 +27,9 @@ impl SurfaceContact {
     /// Finds candidates anew, for this way and for what is near it.
     fn search(&mut self, x: &[World3], x_t1: &[World3]) {
         let skin = SKIN * self.settings.thickness;
-        let radius = |v: u32| self.radius[v as usize] + 0.5 * skin;
-        let mut found: Vec<(usize, Pair)> = Vec::new();
+        let half = 0.5 * (self.settings.thickness + skin);
+        let radius = |_: u32| half;
+        let mut found: Vec<(usize, Pair, f64)> = Vec::new();
         if self.settings.self_contact {
             // What all of it has in common brings nothing nearer.
             let n = x.len().max(1) as f64;
@@ -38,10 +39,9 @@ impl SurfaceContact {
             let body = Body::moving(&self.cloth, x, &end, &radius);
             body.update_tree(&mut self.cloth_tree);
             let pairs = swept::near_within(body, &self.cloth_tree);
-            found.extend(pairs.into_iter().map(|(pair, _)| (0, pair)));
+            found.extend(pairs.into_iter().map(|(pair, distance)| (0, pair, distance)));
         }
         if let Some(moving) = &mut self.obstacles {
-            let half = 0.5 * (self.settings.thickness + skin);
             let around = |points: [&[World3]; 2], room: f64| {
                 Aabb::around(points.into_iter().flatten()).grown(room)
             };
@@ -49,8 +49,7 @@ impl SurfaceContact {
             let is_near =
                 around([x, x_t1], room).overlaps(&around([&moving.now, &moving.then], room));
             if is_near {
-                let room = |_: u32| half;
-                let other = Body::moving(&moving.fixed.surface, &moving.now, &moving.then, &room);
+                let other = Body::moving(&moving.fixed.surface, &moving.now, &moving.then, &radius);
                 if moving.tree_way[0] != moving.now || moving.tree_way[1] != moving.then {
                     other.update_tree(&mut moving.tree);
                     moving.tree_way = [moving.now.clone(), moving.then.clone()];
@@ -59,10 +58,18 @@ impl SurfaceContact {
                 body.update_tree(&mut self.cloth_tree);
                 let sides = ((body, &self.cloth_tree), (other, &moving.tree));
                 let pairs = swept::near_between(sides.0, sides.1);
-                found.extend(pairs.into_iter().map(|(pair, _)| (1, pair)));
+                found.extend(pairs.into_iter().map(|(pair, distance)| (1, pair, distance)));
             }
         }
-        let pairs = found.into_iter().map(|(set, pair)| self.sides(set, pair)).collect();
+        let mut pairs = vec![None; found.len()];
+        par::fill(&mut pairs, |k| {
+            let (set, pair, distance) = found[k];
+            let sides = self.sides(set, pair);
+            let (from, to) = (self.corners_now(&sides, x), self.corners_then(&sides, x_t1));
+            let left = distance - sides.relative_motion(&from, &to);
+            (left <= sides.thickness + skin).then_some(sides)
+        });
+        let pairs = pairs.into_iter().flatten().collect();
         let (now, then) = self.obstacle_way();
         self.candidates = Candidates::new(pairs, skin, [x, x_t1], [now, then]);
     }
@@ -73,6 +80,11 @@ impl SurfaceContact {
             Some(moving) if set == 1 => &moving.fixed.surface,
             _ => &self.cloth,
         };
-        Sides::new(pair, pair.vertices(&self.cloth, other), set == 0)
+        let thickness = self.settings.thickness;
+        let mut sides = Sides::new(pair, pair.vertices(&self.cloth, other), set == 0, thickness);
+        if set == 0 {
+            sides.thickness = thickness.min(self.rest.most(&sides));
+        }
+        sides
     }
 }
