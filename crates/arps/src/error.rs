@@ -1,0 +1,71 @@
+//! What can be wrong with thresholds.
+
+use crate::law::Law;
+
+/// Why thresholds were refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum ThresholdError {
+    /// Not a number, or below zero.
+    #[error("the {which} threshold is {value} {unit}; it must be a number from 0 to infinity")]
+    Value {
+        /// Which one: `rest` or `full`.
+        which: &'static str,
+        /// Its value (unit of the thresholds).
+        value: f64,
+        /// Unit of the thresholds.
+        unit: &'static str,
+    },
+    /// Full dynamics would begin below rest.
+    #[error(
+        "the thresholds are inverted: rest up to {rest} {unit}, but full dynamics from {full} {unit}"
+    )]
+    Inverted {
+        /// Rest up to here (unit of the thresholds).
+        rest: f64,
+        /// Full dynamics from here (unit of the thresholds).
+        full: f64,
+        /// Unit of the thresholds.
+        unit: &'static str,
+    },
+    /// The law needs more room between the thresholds than there is.
+    #[error(
+        "`{law:?}` needs more room between rest up to {rest} {unit} and full dynamics from {full} \
+         {unit}: the ratio of momenta must be above {ratio}"
+    )]
+    TooClose {
+        /// The law.
+        law: Law,
+        /// Rest up to here (unit of the thresholds).
+        rest: f64,
+        /// Full dynamics from here (unit of the thresholds).
+        full: f64,
+        /// Unit of the thresholds.
+        unit: &'static str,
+        /// Bound of the ratio of the momenta (1).
+        ratio: f64,
+    },
+    /// A law that would never let anything move.
+    #[error("`{law:?}` needs a finite threshold for full dynamics: without one nothing ever moves")]
+    NeverFull {
+        /// The law.
+        law: Law,
+    },
+    /// A mass that is not a positive finite number.
+    #[error("the mass is {mass} kg; it must be positive and finite")]
+    Mass {
+        /// The mass (kg).
+        mass: f64,
+    },
+}
+
+/// A law whose kinetic energy is not convex has no conjugate, and no implicit step that is sure to
+/// be stable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the kinetic energy of `{law:?}` is not convex: implicit steps with it can gain energy without \
+     bound; take `Ramp`, or `paper::algorithm_1` to compare"
+)]
+pub struct NotConvex {
+    /// The law.
+    pub law: Law,
+}
