@@ -69,3 +69,75 @@ pub struct NotConvex {
     /// The law.
     pub law: Law,
 }
+
+/// Why a state was refused.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum StateError {
+    /// Lists of different lengths.
+    #[error("there are {x} positions, {v} velocities and {m} masses")]
+    Lengths {
+        /// Number of positions.
+        x: usize,
+        /// Number of velocities.
+        v: usize,
+        /// Number of masses.
+        m: usize,
+    },
+    /// A mass that is not a positive finite number.
+    #[error("the mass of particle {particle} is {mass} kg; it must be positive and finite")]
+    Mass {
+        /// Its index.
+        particle: usize,
+        /// Its mass (kg).
+        mass: f64,
+    },
+    /// A position or velocity that is not finite.
+    #[error("position or velocity of particle {particle} is not finite")]
+    NotFinite {
+        /// Its index.
+        particle: usize,
+    },
+}
+
+/// Why a step was not made; the state is as it was.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// A time that is not positive and finite.
+    #[error("{what} is {value} s; it must be positive and finite")]
+    Time {
+        /// Which one.
+        what: &'static str,
+        /// Its value (s).
+        value: f64,
+    },
+    /// The step led to a position or momentum that is not finite: a force that is not, or a step too
+    /// long for the stiffness.
+    #[error("particle {particle} gets a position or momentum that is not finite")]
+    NotFinite {
+        /// Its index.
+        particle: usize,
+    },
+    /// Implicit steps need a convex kinetic energy.
+    #[error("particle {particle}: {cause}")]
+    NotConvex {
+        /// Its index.
+        particle: usize,
+        /// Which law, and what to do.
+        cause: NotConvex,
+    },
+    /// [`Law::Exact`] in an implicit step.
+    #[error(
+        "particle {particle}: the conjugate of `Exact` has a second kink, which Newton's method does not \
+         pass; take `Ramp`"
+    )]
+    SecondKink {
+        /// Its index.
+        particle: usize,
+    },
+    /// A linear system could not be solved.
+    #[error("a linear system of {unknowns} particles is singular, or did not converge")]
+    Singular {
+        /// How many particles it has.
+        unknowns: usize,
+    },
+}

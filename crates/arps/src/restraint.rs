@@ -21,7 +21,7 @@ pub struct Particle {
 /// A policy of restraint: the kinetic energy that each particle shall have.
 ///
 /// It is pure: the same particle, the same answer, on whatever thread and in whatever order. It is
-/// asked once per particle and step, so an answer should cost some nanoseconds. `()` is the policy
+/// asked once or twice per particle and step, so an answer should cost some nanoseconds. `()` is the policy
 /// that restrains nothing.
 ///
 /// The restrained energy is conserved for thresholds that depend on nothing but the mass. Where a

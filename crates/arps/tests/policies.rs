@@ -131,5 +131,5 @@ fn a_policy_of_ones_own_plugs_in_boxed_or_not() {
     let at = Particle { x: Vector3::new(20.0, 0.0, 0.0), ..particle(1.0) };
     let boxed: Box<dyn Restraint> = Box::new(Far(Speed::new(0.1, 0.4).unwrap()));
     assert_eq!(far.at(&at).p_r(), 0.2);
-    assert_eq!(boxed.at(&at), (&far).at(&at));
+    assert_eq!(boxed.at(&at), Restraint::at(&&far, &at));
 }
