@@ -135,7 +135,14 @@ impl<R: Restraint> Implicit<R> {
                 stiffness: &self.stiffness,
                 tolerance: 0.1 * tolerance,
             };
-            self.next.d.clone_from(&self.now.d);
+            if report.n_newton == 1 {
+                // Go on as before, to begin with.
+                let on = |i: usize| h * self.conjugates[i].held().velocity(&particles.p[i]);
+                self.next.d.clear();
+                self.next.d.extend((0..n).map(on));
+            } else {
+                self.next.d.clone_from(&self.now.d);
+            }
             let convex = self.solver.solve(&problem, &mut self.next.d, &mut solve)?;
             report.n_solves += convex.n_solves;
             report.n_unknowns += convex.n_unknowns;

@@ -71,7 +71,9 @@ pub fn algorithm_1(
         rhs.fixed_rows_mut::<3>(3 * a).copy_from(&dp[i]);
     }
     let unknowns = active.len();
-    let solution = matrix.lu().solve(&rhs).ok_or(StepError::Singular { unknowns })?;
+    // nalgebra does not solve systems without unknowns.
+    let solution = if unknowns == 0 { Some(rhs) } else { matrix.lu().solve(&rhs) };
+    let solution = solution.ok_or(StepError::Singular { unknowns })?;
     for (a, &i) in active.iter().enumerate() {
         dp[i] = solution.fixed_rows::<3>(3 * a).into_owned();
     }

@@ -84,7 +84,7 @@ proptest! {
                 }
             }
             prop_assert_eq!(queue.len(), list.iter().flatten().count());
-            prop_assert_eq!(queue.is_empty(), queue.len() == 0);
+            prop_assert_eq!(queue.is_empty(), list.iter().flatten().next().is_none());
         }
     }
 }
