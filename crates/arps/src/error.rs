@@ -50,6 +50,12 @@ pub enum ThresholdError {
         /// The law.
         law: Law,
     },
+    /// A duration that is not a positive finite number.
+    #[error("the duration is {duration} s; it must be positive and finite")]
+    Duration {
+        /// The duration (s).
+        duration: f64,
+    },
     /// A mass that is not a positive finite number.
     #[error("the mass is {mass} kg; it must be positive and finite")]
     Mass {

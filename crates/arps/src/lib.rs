@@ -1,6 +1,7 @@
 //! Adaptively restrained particles: what hardly moves rests, exactly (Manteaux2013, corrected).
 #![forbid(unsafe_code)]
 
+mod automatic;
 mod blocks;
 mod conjugate;
 mod convex;
@@ -15,6 +16,7 @@ mod particles;
 mod restraint;
 mod wake;
 
+pub use automatic::Automatic;
 pub use blocks::{Blocks, SparseBlocks};
 pub use conjugate::Conjugate;
 pub use convex::{ConvexProblem, ConvexReport, ConvexSolver};

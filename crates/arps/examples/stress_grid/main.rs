@@ -28,6 +28,9 @@ fn main() {
     for (name, make) in
         [("chain", Net::chain as fn(f64) -> Net), ("square", Net::square), ("slack", Net::slack)]
     {
+        if only.as_ref().is_some_and(|only| only != name) {
+            continue;
+        }
         for ratio in [1.0, 1e2, 1e4, 1e6, 1e8] {
             for rate in [1000.0, 200.0, 25.0] {
                 let net = make(ratio);

@@ -119,13 +119,16 @@ impl Net {
             .sum()
     }
 
-    /// How far rounding of the positions moves the potential energy (J): Σ |force| · ε · |x|, times 16.
-    fn rounding(&self, x: &[Vector3]) -> f64 {
+    /// How far rounding of the positions moves the energy in a step (J), times 16: the potential
+    /// energy by force times ε ‖x‖, the kinetic by velocity times the momentum h k ε ‖x‖.
+    fn rounding(&self, particles: &Particles, h: f64) -> f64 {
         let one = |s: &Spring| {
-            let stretch = ((x[s.ends[1]] - x[s.ends[0]]).norm() - s.length).max(0.0);
-            let size = x[s.ends[0]].norm() + x[s.ends[1]].norm();
-            let moved = f64::EPSILON * size;
-            s.stiffness * moved * (stretch + moved)
+            let [a, b] = s.ends;
+            let x = &particles.x;
+            let stretch = ((x[b] - x[a]).norm() - s.length).max(0.0);
+            let moved = f64::EPSILON * (x[a].norm() + x[b].norm());
+            let v = (particles.p[a].norm() + particles.p[b].norm()) / MASS;
+            s.stiffness * moved * (stretch + moved + h * v)
         };
         16.0 * self.springs.iter().map(one).sum::<f64>()
     }
@@ -233,7 +236,7 @@ pub(crate) fn run(net: &Net, method: Method, h: f64, n_steps: usize) -> Outcome 
         }
         let gain = after - before;
         outcome.gain = outcome.gain.max(gain / given);
-        let rounding = 1e-14 * (before + after) + net.rounding(&particles.x);
+        let rounding = 1e-14 * (before + after) + net.rounding(&particles, h);
         outcome.gain_by_rounding = outcome.gain_by_rounding.max(gain / rounding);
     }
     outcome.solves /= steps as f64;
