@@ -60,6 +60,7 @@ pub struct ConvexReport {
 #[derive(Clone, Debug, Default)]
 pub struct ConvexSolver {
     p: Vec<Vector3>,
+    size: Vec<f64>,
     place: Vec<usize>,
     movers: Vec<usize>,
     inertia: Vec<Matrix3>,
@@ -114,24 +115,30 @@ impl ConvexSolver {
         }
     }
 
-    /// Momenta at the end of the step for displacements.
+    /// Momenta at the end of the step for displacements, and the size of what they are summed from.
     fn momenta<B: Blocks>(&mut self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) {
         self.p.clear();
-        let p = |i: usize| problem.drive[i] - problem.h * problem.stiffness.row_times(i, d);
-        self.p.extend((0..d.len()).map(p));
+        self.size.clear();
+        for i in 0..d.len() {
+            let own = problem.stiffness.diagonal(i) * d[i];
+            let (mut sum, mut size) = (own, own.abs().sum());
+            problem.stiffness.visit_row(i, |j, block| {
+                let part = block * d[j];
+                sum += part;
+                size += part.abs().sum();
+            });
+            self.p.push(problem.drive[i] - problem.h * sum);
+            self.size.push(problem.drive[i].abs().sum() + problem.h * size);
+        }
     }
 
     /// Greatest error of momentum, and whether each is below the tolerance or rounding.
     fn residual<B: Blocks>(&self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) -> (f64, bool) {
         let (mut worst, mut converged) = (0.0f64, true);
         for i in 0..d.len() {
-            let own = problem.stiffness.diagonal(i).norm() * d[i].norm();
-            let mut moved = own;
-            problem.stiffness.visit_row(i, |j, block| moved += block.norm() * d[j].norm());
-            let rounding = problem.drive[i].norm() + problem.h * moved;
             let error = momentum_error(&problem.conjugates[i], &self.p[i], &d[i], problem.h);
             worst = worst.max(error);
-            converged &= error <= problem.tolerance + 8.0 * f64::EPSILON * rounding;
+            converged &= error <= problem.tolerance + 8.0 * f64::EPSILON * self.size[i];
         }
         (worst, converged)
     }
