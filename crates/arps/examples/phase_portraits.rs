@@ -55,7 +55,7 @@ fn explicit(law: Option<Law>, gamma: f64, duration: f64) -> Result<Curve, Box<dy
 
 /// Implicit steps of h: the paper's scheme for its own law, the convex one otherwise.
 fn implicit(law: Option<Law>, h: f64, duration: f64) -> Result<Curve, Box<dyn Error>> {
-    let mut stiffness = SparseBlocks::new(1, []);
+    let mut stiffness = SparseBlocks::new(1, [])?;
     let ramp = Kinetic::new(if law.is_some() { ENERGY_R } else { 0.0 }, ENERGY_F)?;
     let mut convex = Implicit::new(ramp, stiffness.clone());
     let mut particles = released();

@@ -79,6 +79,9 @@ impl ConvexSolver {
     ///
     /// # Errors
     /// What `solve` says.
+    ///
+    /// # Panics
+    /// If the lists of the problem and `d` have different lengths.
     pub fn solve<B: Blocks>(
         &mut self,
         problem: &ConvexProblem<'_, B>,

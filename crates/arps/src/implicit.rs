@@ -92,10 +92,17 @@ impl<R: Restraint> Implicit<R> {
     }
 
     /// Stops when the error of every momentum is below this share (1) of the greatest drive
-    /// ‖p + h f‖; 1e-10 if not set. What rounding allows is enough in any case.
-    pub fn with_tolerance(mut self, tolerance: f64) -> Implicit<R> {
+    /// ‖p + h f‖; 1e-10 if not set. What rounding allows is enough in any case. With 1e-6, and linear
+    /// systems solved to 1e-8, energy rises by nothing that counts; with 1e-3 by up to some 1e-4.
+    ///
+    /// # Errors
+    /// A tolerance that is not positive.
+    pub fn with_tolerance(mut self, tolerance: f64) -> Result<Implicit<R>, StepError> {
+        if tolerance.is_nan() || tolerance <= 0.0 {
+            return Err(StepError::Tolerance { value: tolerance });
+        }
         self.tolerance = tolerance;
-        self
+        Ok(self)
     }
 
     /// Makes a step of h (s). `evaluate` is given positions (m), adds forces (N) to a slice of zeros
@@ -103,7 +110,7 @@ impl<R: Restraint> Implicit<R> {
     /// and returns the potential energy (J). `solve` is as in [`ConvexSolver::solve`].
     ///
     /// # Errors
-    /// A step that is not positive and finite; a policy with a law that is not convex, or with
+    /// A step that is not positive and finite; a pattern of another size; a policy with a law that is not convex, or with
     /// [`Law::Exact`], whose conjugate has a second kink; a linear system that cannot be solved; a
     /// result that is not finite. The particles are then as they were.
     pub fn step(
@@ -114,8 +121,11 @@ impl<R: Restraint> Implicit<R> {
         mut solve: impl FnMut(&MoverSystem<'_, SparseBlocks>, &mut [Vector3]) -> Result<(), StepError>,
     ) -> Result<ImplicitReport, StepError> {
         check_time("the step", h)?;
-        self.hold(particles)?;
         let n = particles.len();
+        if self.stiffness.n_rows() != n {
+            return Err(StepError::Pattern { rows: self.stiffness.n_rows(), particles: n });
+        }
+        self.hold(particles)?;
         let mut report = ImplicitReport::default();
         self.now.d.clear();
         self.now.d.resize(n, Vector3::zeros());

@@ -19,7 +19,7 @@ struct Springs {
 
 impl Springs {
     fn pattern(&self) -> SparseBlocks {
-        SparseBlocks::new(self.x0.len(), self.list.iter().map(|&(i, j, _)| [i, j]))
+        SparseBlocks::new(self.x0.len(), self.list.iter().map(|&(i, j, _)| [i, j])).unwrap()
     }
 
     fn evaluate(&self, x: &[Vector3], f: &mut [Vector3], stiffness: &mut SparseBlocks) -> f64 {
@@ -70,6 +70,20 @@ fn usable_law() -> impl Strategy<Value = Law> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(96))]
+
+    /// The policy of none, and thresholds of zero: the same bits.
+    #[test]
+    fn zero_thresholds_are_as_none_to_the_bit((springs, start) in net(), h in 0.001..0.1f64) {
+        let (mut a, mut b) = (start.clone(), start);
+        let mut none = Implicit::new((), springs.pattern());
+        let mut zero = Implicit::new(Speed::new(0.0, 0.4).unwrap(), springs.pattern());
+        for _ in 0..10 {
+            let evaluate = |x: &[Vector3], f: &mut [Vector3], l: &mut SparseBlocks| springs.evaluate(x, f, l);
+            let report = none.step(&mut a, h, evaluate, dense).unwrap();
+            prop_assert_eq!(report, zero.step(&mut b, h, evaluate, dense).unwrap());
+        }
+        prop_assert_eq!(a, b);
+    }
 
     /// Without restraint a step is one solve, and that of backward Euler.
     #[test]
@@ -268,6 +282,14 @@ fn refusals_leave_the_state_as_it_was() {
         let error = implicit.step(&mut particles, h, evaluate, dense).unwrap_err();
         assert!(matches!(error, StepError::Time { .. }));
     }
+    let pattern = SparseBlocks::new(3, []).unwrap();
+    let error = Implicit::new((), pattern).step(&mut particles, 0.01, evaluate, dense).unwrap_err();
+    assert_eq!(error, StepError::Pattern { rows: 3, particles: 2 });
+    for tolerance in [0.0, -1.0, f64::NAN] {
+        assert!(Implicit::new((), springs.pattern()).with_tolerance(tolerance).is_err());
+    }
+    let message = SparseBlocks::new(2, [[0, 1], [1, 2]]).unwrap_err().to_string();
+    assert!(message.contains("[1, 2] is not among 2"), "{message}");
     let broken = |x: &[Vector3], f: &mut [Vector3], l: &mut SparseBlocks| {
         f[1].x = f64::NAN;
         springs.evaluate(x, f, l)
@@ -313,7 +335,7 @@ fn growth_as_told(row: &[f64]) -> bool {
     let convex = Kinetic::new(energy_r, row[1] * energy_r).unwrap();
     let mut particles = Particles::new(vec![Vector3::x()], &[Vector3::zeros()], vec![1.0]).unwrap();
     let mut cured = particles.clone();
-    let mut stiffness = SparseBlocks::new(1, []);
+    let mut stiffness = SparseBlocks::new(1, []).unwrap();
     let mut implicit = Implicit::new(convex, stiffness.clone());
     let spring = |x: &[Vector3], f: &mut [Vector3], l: &mut SparseBlocks| {
         f[0] -= x[0];

@@ -78,7 +78,7 @@ impl Net {
     }
 
     pub(crate) fn pattern(&self) -> SparseBlocks {
-        SparseBlocks::new(self.x.len(), self.springs.iter().map(|spring| spring.ends))
+        SparseBlocks::new(self.x.len(), self.springs.iter().map(|spring| spring.ends)).unwrap()
     }
 
     pub(crate) fn particles(&self) -> Particles {
