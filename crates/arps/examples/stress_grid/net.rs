@@ -181,7 +181,7 @@ impl Restraint for Pinned {
 pub(crate) fn run(net: &Net, method: Method, h: f64, n_steps: usize) -> Outcome {
     let (law, v_r) = match method {
         Method::Free => (Law::Ramp, 0.0),
-        Method::Convex(law) | Method::Paper(law) => (law, 0.05),
+        Method::Convex(law) | Method::Paper(law) => (law, 0.2),
     };
     let speed = Speed::with_law(law, v_r, v_r * 20f64.sqrt()).unwrap();
     let policy = Pinned { speed, pins: net.pins.clone() };
