@@ -40,6 +40,9 @@ pub struct ContactSettings {
 
 /// Share of the thickness below which a gap that no energy keeps open is worth one.
 const OVERLOOKED: f64 = 0.5;
+/// Speed at which things that are nearer than their thickness go apart at most (m/s): without it,
+/// whatever brings them nearer at once, an impact or an edit of the mesh, would throw them apart.
+const RECOVERY: f64 = 0.1;
 /// Speed below which things stick (m/s).
 const STICK: f64 = 1e-3;
 
@@ -113,9 +116,14 @@ impl SurfaceContact {
         STIFFNESS * cloth.clone().map(of).sum::<f64>() / cloth.count() as f64
     }
 
+    /// Gap below which a pair at some distance repels each other in this stage (m).
+    fn reach(&self, sides: &Sides, distance: f64) -> f64 {
+        sides.thickness.min(distance + RECOVERY * self.h)
+    }
+
     /// The contact of a pair on the way to `x`, if it comes near on it.
     fn touch(&self, sides: &Sides, start: ClosestPoints, x: &[World3]) -> Option<Touch> {
-        let thickness = sides.thickness;
+        let thickness = self.reach(sides, start.distance);
         let (from, to) = (self.corners_now(sides, &self.x_t0), self.corners_then(sides, x));
         let closest = approach(sides, [&from, &to], start, thickness)?;
         // The distance to the end of an edge is that of a vertex, which has a pair of its own.
@@ -134,7 +142,8 @@ impl SurfaceContact {
         }
         let before = moving.map(|moving| (moving.fixed.motion)(times[1] - stage.h));
         for (sides, closest) in near {
-            let [_, slope, _] = barrier(closest.distance, sides.thickness);
+            let reach = self.reach(sides, closest.distance);
+            let [_, slope, _] = barrier(closest.distance, reach);
             let (mut mu, mut way) = (self.settings.friction, World3::zeros());
             if let (Some(moving), Some(before), true) = (moving, &before, !sides.is_within_cloth())
             {
