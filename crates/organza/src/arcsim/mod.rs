@@ -23,6 +23,7 @@
 mod cloth;
 mod format;
 mod handle;
+mod mot;
 mod motion;
 mod obstacle;
 mod translate;

@@ -11,7 +11,7 @@ pub(super) fn resolve(
     cloth: ClothFile,
     name: String,
     at: &At<'_>,
-    context: &mut Context<'_>,
+    context: &mut Context<'_, '_>,
 ) -> Option<Cloth> {
     check_factors(&cloth, at);
     let multipliers = Multipliers {
@@ -88,7 +88,7 @@ fn check_products(fabric: &Fabric, multipliers: Multipliers, at: &At<'_>) {
     }
 }
 
-fn fabric(choice: FabricChoice, at: &At<'_>, context: &mut Context<'_>) -> Option<Fabric> {
+fn fabric(choice: FabricChoice, at: &At<'_>, context: &mut Context<'_, '_>) -> Option<Fabric> {
     if let Some(fabric) = preset(&choice) {
         return Some(Fabric::Orthotropic(fabric));
     }
