@@ -30,14 +30,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<Vec<Isometry3<f64>>>, String> {
         }
         let positions = block::<3>(&mut lines, n_frames)?;
         let turns = block::<4>(&mut lines, n_frames)?;
-        let pose = |((_, x), (line, q)): (&(usize, [f64; 3]), &(usize, [f64; 4]))| {
-            let [w, x_, y, z] = *q;
-            let turn = UnitQuaternion::try_new(Quaternion::new(w, x_, y, z), 1e-6);
+        let mut poses = Vec::with_capacity(positions.len());
+        for ((_, x), (line, [w, i, j, k])) in positions.into_iter().zip(turns) {
+            let turn = UnitQuaternion::try_new(Quaternion::new(w, i, j, k), 1e-6);
             let turn = turn.ok_or_else(|| format!("line {line}: the quaternion is zero"))?;
-            Ok(Isometry3::from_parts(Translation3::from(*x), turn))
-        };
-        let poses: Result<Vec<_>, String> = positions.iter().zip(&turns).map(pose).collect();
-        bodies.push(poses?);
+            poses.push(Isometry3::from_parts(Translation3::from(x), turn));
+        }
+        bodies.push(poses);
     }
     if bodies.is_empty() { Err("has no bodies".into()) } else { Ok(bodies) }
 }
@@ -59,7 +58,7 @@ fn block<'t, const N: usize>(
         let (line, text) = lines.next().ok_or_else(cut)?;
         let numbers = numbers(text)
             .ok_or_else(|| format!("line {line}: expected {N} numbers of {what}, got `{text}`"))?;
-        if let Some(c) = numbers.iter().find(|c| !(c.abs() <= MAX_COORDINATE_M)) {
+        if let Some(c) = numbers.iter().find(|c| c.is_nan() || c.abs() > MAX_COORDINATE_M) {
             return Err(format!("line {line}: {c} is beyond the limit of {MAX_COORDINATE_M:e}"));
         }
         block.push((line, numbers));

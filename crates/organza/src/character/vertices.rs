@@ -13,9 +13,12 @@ pub(super) struct Vertices {
     pub(super) influences: Vec<(u32, f64)>,
     pub(super) first: Vec<usize>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// The vertex of every place with its influences, by their bits.
-    known: BTreeMap<(Vec<u64>, Vec<(u32, u64)>), u32>,
+    /// The vertex of every place with its influences.
+    known: BTreeMap<Key, u32>,
 }
+
+/// Place and influences of a vertex, by their bits.
+type Key = (Vec<u64>, Vec<(u32, u64)>);
 
 impl Vertices {
     /// Adds the triangles of a primitive, on the joints of a skin (the number of the first bone and
