@@ -40,6 +40,8 @@ pub struct Obstacle {
     pub triangles: Vec<[u32; 3]>,
     /// Coefficient of friction between it and cloth (1).
     pub friction: f64,
+    /// Its thickness in contact (m); absent for that of the scene.
+    pub thickness: Option<f64>,
     /// How its vertices move by themselves.
     shape: Arc<Shape>,
     /// From the frame of the shape to that of the motion.
@@ -188,6 +190,7 @@ impl Obstacle {
             name: name.into(),
             triangles,
             friction,
+            thickness: None,
             shape: Arc::new(shape),
             place,
             motion: motion.filter(|motion| motion.is_moving()).cloned(),

@@ -366,7 +366,11 @@ impl World {
             let mut system = System::new(&self.cloth, &self.fabrics, &self.environment, h)?;
             if let Some(settings) = self.contact {
                 let contact =
-                    SurfaceContact::new(&self.cloth, self.bodies.surface.as_ref(), settings)?;
+                    SurfaceContact::new(&self.cloth, self.bodies.surface.as_ref(), settings)?
+                        .with_thickness(&self.cloth, |panel| {
+                            let of = |garment: &&Garment| garment.panels.contains(&panel);
+                            self.garments.iter().find(of).and_then(|garment| garment.thickness)
+                        });
                 system.set_contact(Box::new(contact));
             }
             self.prepared = Some(Prepared { system, names: by_name(&self.cloth.mesh) });

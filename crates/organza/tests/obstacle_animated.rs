@@ -113,6 +113,10 @@ fn bad_times_are_complained_of_at_their_place() {
             "start_s: -1",
             "s.json5:2:33: obstacles[0].start_s: must be zero or more and finite, got -1",
         ),
+        (
+            "thickness_m: 0",
+            "s.json5:2:37: obstacles[0].thickness_m: must be positive and finite, got 0",
+        ),
         ("end_s: 0", "s.json5:2:31: obstacles[0].end_s: 0 s is not after the start at 0 s"),
         (
             "motion: {keyframes: [{time_s: 0, transform: {scale: 0}}]}",
@@ -234,4 +238,34 @@ fn coming_into_cloth_ends_the_run_and_says_where() {
     // Another try ends in the same way.
     assert!(matches!(world.advance(), Err(StepError::InTheWay { .. })));
     assert_eq!(world.frame, 2);
+}
+
+/// Three sheets at rest on a floor, each of its own thickness: every gap is that of its pair.
+#[test]
+fn every_pair_keeps_its_own_distance() {
+    let cloth = |name: &str, z: f64, thickness: &str| {
+        format!(
+            "{{name: '{name}', mesh: {{grid: {{size_m: [0.4, 0.4], cells: [2, 2]}}}}, fabric: 'denim', \
+             damping: {{mass_per_s: 20, stiffness_s: 1e-3}}, transform: {{translate: [0, 0, {z}]}}, {thickness}}}"
+        )
+    };
+    let text = format!(
+        "{{frames: 20, integrator: 'implicit-euler', cloths: [{}, {}, {}], contact: {{thickness_m: 0.004}},
+        obstacles: [{{mesh: {{plane: {{size_m: [2, 2]}}}}, thickness_m: 0.01}}]}}",
+        cloth("a", 0.02, "thickness_m: 0.002"),
+        cloth("b", 0.04, ""),
+        cloth("c", 0.06, "thickness_m: 0.02"),
+    );
+    let loaded = parse(text, "s", &LoadOptions::default(), &from_sources(&[]));
+    let mut world = World::new(&loaded.unwrap_or_else(|e| panic!("{e}"))).unwrap();
+    for _ in 0..20 {
+        world.advance().unwrap_or_else(|e| panic!("{e}"));
+    }
+    let heights: Vec<f64> =
+        world.cloth.x.chunks(9).map(|x| x.iter().map(|x| x.z).sum::<f64>() / 9.0).collect();
+    let gaps = [heights[0], heights[1] - heights[0], heights[2] - heights[1]];
+    // Barriers begin at the thickness; a light sheet rests a little below.
+    for (gap, thickness) in gaps.into_iter().zip([0.006, 0.003, 0.012]) {
+        assert!(gap > 0.6 * thickness && gap < 1.05 * thickness, "{gaps:?} {thickness}");
+    }
 }

@@ -66,6 +66,7 @@ pub(super) fn translate(
             stretching: material.stretching_mult.unwrap_or(1.0),
             bending: material.bending_mult.unwrap_or(1.0),
         },
+        thickness_m: None,
         strain_limits: material.strain_limits.filter(|_| !notes.is_disabled("strainlimiting")),
         bending,
         damping: Damping { mass_per_s: 0.0, stiffness_s: material.damping.unwrap_or(0.0) },

@@ -77,6 +77,7 @@ fn listed_obstacle(
         transform: translate_transform(obstacle.transform, [&place, &place], notes),
         motion: motions.translate(obstacle.motion, [&at, &at], notes),
         friction,
+        thickness_m: None,
         start_s: obstacle.start_time.unwrap_or(0.0),
         end_s: obstacle.end_time,
     }
@@ -121,6 +122,7 @@ fn numbered(
             transform: Transform::default(),
             motion,
             friction,
+            thickness_m: None,
             start_s: 0.0,
             end_s: None,
         });

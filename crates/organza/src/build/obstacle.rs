@@ -18,8 +18,9 @@ pub(super) fn obstacles(loaded: &Loaded) -> Result<Vec<Obstacle>, BuildError> {
         let shape = shape(&body.mesh, loaded).map_err(error)?;
         let motion = body.motion.as_ref();
         let name = body.name.as_str();
-        let obstacle = Obstacle::new(name, shape, &body.transform, motion, body.friction)
+        let mut obstacle = Obstacle::new(name, shape, &body.transform, motion, body.friction)
             .map_err(|e| error(e.to_string()))?;
+        obstacle.thickness = body.thickness_m;
         n_triangles += obstacle.triangles.len();
         if n_triangles > limits::MAX_SCENE_TRIANGLES {
             let limit = limits::MAX_SCENE_TRIANGLES;

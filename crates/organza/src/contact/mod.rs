@@ -78,7 +78,7 @@ impl SurfaceContact {
         Ok(SurfaceContact {
             settings,
             cloth: Surface::new(cloth.mesh.n_vertices(), cloth.mesh.triangles())?,
-            radius: radii(cloth, 0.5 * settings.thickness),
+            radius: radii(cloth, |_| 0.5 * settings.thickness),
             cloth_tree: Bvh::build(0, |_| Aabb::EMPTY),
             obstacles: obstacles.map(Moving::new),
             candidates: Candidates::default(),
@@ -89,6 +89,19 @@ impl SurfaceContact {
             inertia: Vec::new(),
             x_t0: Vec::new(),
         })
+    }
+
+    /// The same contact, in which panels of the cloth have a thickness of their own (m) where one is
+    /// given: things of two thicknesses keep the mean of them.
+    #[must_use]
+    pub fn with_thickness(
+        mut self,
+        cloth: &ClothState,
+        of_panel: impl Fn(u32) -> Option<f64>,
+    ) -> SurfaceContact {
+        let thickness = |panel| of_panel(panel).unwrap_or(self.settings.thickness);
+        self.radius = radii(cloth, |panel| 0.5 * thickness(panel));
+        self
     }
 
     /// The corners of a pair at the start of the stage (m).
@@ -107,7 +120,7 @@ impl SurfaceContact {
             if sides.is_cloth[k] {
                 self.radius[sides.vertices[k] as usize]
             } else {
-                0.5 * self.settings.thickness
+                self.obstacles.as_ref().map_or(0.0, |m| m.radius(sides.vertices[k], &self.settings))
             }
         };
         let largest = |side: bool| {
@@ -164,16 +177,17 @@ impl SurfaceContact {
     }
 }
 
-/// Radii of the vertices: `most`, but less where the mesh is fine (m).
-fn radii(cloth: &ClothState, most: f64) -> Vec<f64> {
+/// Radii of the vertices: the smallest `most` of the panels around them, but less where the mesh is
+/// fine (m).
+fn radii(cloth: &ClothState, most: impl Fn(u32) -> f64) -> Vec<f64> {
     let mesh = &cloth.mesh;
     let lowest = |t: mesh_core::TriangleId| {
         let edges = [0, 1, 2].map(|k| mesh.material_edge(t.half_edge(k)).norm());
         2.0 * mesh.area(t) / edges.into_iter().fold(0.0, f64::max)
     };
-    let mut radii = vec![most; mesh.n_vertices()];
-    for (t, corners) in mesh.triangle_ids().zip(mesh.triangles()) {
-        let radius = RADIUS_OF_HEIGHT * lowest(t);
+    let mut radii = vec![f64::INFINITY; mesh.n_vertices()];
+    for ((t, corners), &panel) in mesh.triangle_ids().zip(mesh.triangles()).zip(mesh.panels()) {
+        let radius = (RADIUS_OF_HEIGHT * lowest(t)).min(most(panel));
         for &i in corners {
             radii[i as usize] = radii[i as usize].min(radius);
         }

@@ -41,15 +41,19 @@ impl SurfaceContact {
             found.extend(pairs.into_iter().map(|(pair, _)| (0, pair)));
         }
         if let Some(moving) = &mut self.obstacles {
-            let half = 0.5 * (self.settings.thickness + skin);
+            let settings = &self.settings;
+            let halves: Vec<f64> = (0..moving.now.len() as u32)
+                .map(|v| moving.radius(v, settings) + 0.5 * skin)
+                .collect();
+            let largest = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
             let around = |points: [&[World3]; 2], room: f64| {
                 Aabb::around(points.into_iter().flatten()).grown(room)
             };
-            let room = self.settings.thickness + skin;
+            let room = largest(&self.radius) + largest(&halves) + 0.5 * skin;
             let is_near =
                 around([x, x_t1], room).overlaps(&around([&moving.now, &moving.then], room));
             if is_near {
-                let room = |_: u32| half;
+                let room = |v: u32| halves[v as usize];
                 let other = Body::moving(&moving.fixed.surface, &moving.now, &moving.then, &room);
                 if moving.tree_way[0] != moving.now || moving.tree_way[1] != moving.then {
                     other.update_tree(&mut moving.tree);

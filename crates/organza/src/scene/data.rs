@@ -82,6 +82,8 @@ pub struct Cloth {
     pub panel_fabrics: Vec<(String, Fabric)>,
     /// Multipliers of the fabric, `thicken` included.
     pub multipliers: Multipliers,
+    /// Thickness in contact (m); absent for that of the scene.
+    pub thickness_m: Option<f64>,
     /// Smallest and largest principal stretch, min < 1 < max (1).
     pub strain_limits: Option<[f64; 2]>,
     /// How bending is measured.
@@ -153,6 +155,8 @@ pub struct Obstacle {
     pub motion: Option<Motion>,
     /// Coefficient of friction between it and cloth (1).
     pub friction: f64,
+    /// Thickness in contact (m); absent for that of the scene.
+    pub thickness_m: Option<f64>,
     /// When it appears (s); 0 for one that is there from the start.
     pub start_s: f64,
     /// When it is gone (s); infinite for never.

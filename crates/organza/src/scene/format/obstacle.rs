@@ -28,6 +28,10 @@ pub struct ObstacleFile {
     /// Coefficient of friction between it and cloth (1).
     #[serde(default = "default::friction")]
     pub friction: f64,
+    /// Thickness in contact (m): cloth and obstacle keep the mean of theirs. Absent means that of
+    /// `contact`.
+    #[serde(default)]
+    pub thickness_m: Option<f64>,
     /// When it appears (s); 0 means that it is there from the start. Cloth must not lie across it
     /// then.
     #[serde(default)]
@@ -186,7 +190,8 @@ pub struct Capsule {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ContactFile {
-    /// Distance that is kept between the middle surfaces of things that touch (m).
+    /// Distance that is kept between the middle surfaces of things that touch, where cloths and
+    /// obstacles have no `thickness_m` of their own (m).
     pub thickness_m: f64,
     /// Coefficient of friction of cloth on cloth (1).
     pub friction: f64,

@@ -55,6 +55,9 @@ fn resolve_one(
 ) -> Option<Obstacle> {
     check_transform(&obstacle.transform, &at.key("transform"));
     at.key("friction").not_negative(obstacle.friction, MAX_FRICTION, "");
+    if let Some(thickness) = obstacle.thickness_m {
+        at.key("thickness_m").positive(thickness, MAX_THICKNESS_M, "m");
+    }
     let mut most = 1.0f64;
     if let Some(motion) = &obstacle.motion {
         check_motion(motion, 1.0, &at.key("motion"));
@@ -70,7 +73,8 @@ fn resolve_one(
     check_times(obstacle.start_s, obstacle.end_s, at);
     let (transform, motion, friction) = (obstacle.transform, obstacle.motion, obstacle.friction);
     let (start_s, end_s) = (obstacle.start_s, obstacle.end_s.unwrap_or(f64::INFINITY));
-    Some(Obstacle { name, mesh, transform, motion, friction, start_s, end_s })
+    let thickness_m = obstacle.thickness_m;
+    Some(Obstacle { name, mesh, transform, motion, friction, thickness_m, start_s, end_s })
 }
 
 /// Checks the one source that `mesh` names.
