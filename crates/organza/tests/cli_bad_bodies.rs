@@ -66,7 +66,7 @@ fn files_of_animated_obstacles() {
             ),
             &[],
             &[
-                "s.json5:2:61: obstacles[0].mesh.obj_sequence.frames: 4.294967296e9 frames is beyond the limit",
+                "s.json5:2:62: obstacles[0].mesh.obj_sequence.frames: 4.294967296e9 frames is beyond the limit",
             ],
         ),
     ];
