@@ -50,6 +50,8 @@ const STICK: f64 = 1e-3;
 pub struct SurfaceContact {
     settings: ContactSettings,
     cloth: Surface,
+    /// Half the thickness around each vertex of the cloth (m).
+    radius: Vec<f64>,
     rest: RestSheet,
     cloth_tree: Bvh,
     obstacles: Option<Moving>,
@@ -83,6 +85,7 @@ impl SurfaceContact {
         Ok(SurfaceContact {
             settings,
             cloth: Surface::new(cloth.mesh.n_vertices(), cloth.mesh.triangles())?,
+            radius: vec![0.5 * settings.thickness; cloth.mesh.n_vertices()],
             rest: RestSheet::new(cloth),
             cloth_tree: Bvh::build(0, |_| Aabb::EMPTY),
             obstacles: obstacles.map(Moving::new),
@@ -99,6 +102,25 @@ impl SurfaceContact {
         })
     }
 
+    /// The same contact, in which panels of the cloth have a thickness of their own (m) where one is
+    /// given: things of two thicknesses keep the mean of them.
+    #[must_use]
+    pub fn with_thickness(
+        mut self,
+        cloth: &ClothState,
+        of_panel: impl Fn(u32) -> Option<f64>,
+    ) -> SurfaceContact {
+        let thickness = |panel| of_panel(panel).unwrap_or(self.settings.thickness);
+        self.radius.fill(f64::INFINITY);
+        for (corners, &panel) in cloth.mesh.triangles().iter().zip(cloth.mesh.panels()) {
+            for &i in corners {
+                let radius = &mut self.radius[i as usize];
+                *radius = radius.min(0.5 * thickness(panel));
+            }
+        }
+        self
+    }
+
     /// The corners of a pair at the start of the stage (m).
     fn corners_now(&self, sides: &Sides, x: &[World3]) -> [World3; 4] {
         sides.corners(x, self.obstacles.as_ref().map_or(&[], |moving| &moving.now))
@@ -107,6 +129,22 @@ impl SurfaceContact {
     /// The corners of a pair at the end of the stage (m).
     fn corners_then(&self, sides: &Sides, x: &[World3]) -> [World3; 4] {
         sides.corners(x, self.obstacles.as_ref().map_or(&[], |moving| &moving.then))
+    }
+
+    /// Distance below which the things of a pair repel each other (m).
+    fn thickness(&self, sides: &Sides) -> f64 {
+        let radius = |k: usize| {
+            if sides.is_cloth[k] {
+                self.radius[sides.vertices[k] as usize]
+            } else {
+                self.obstacles.as_ref().map_or(0.0, |m| m.radius(sides.vertices[k], &self.settings))
+            }
+        };
+        let largest = |side: bool| {
+            (0..4).filter(|&k| sides.is_first[k] == side).map(radius).fold(0.0, f64::max)
+        };
+        let thickness = largest(true) + largest(false);
+        if sides.is_within_cloth() { thickness.min(self.rest.most(sides)) } else { thickness }
     }
 
     /// Stiffness of a pair (N/m).
