@@ -99,6 +99,9 @@ impl SurfaceContact {
         par::collect(pairs.len(), |k, hits| {
             let sides = &pairs[k];
             let is_cloth = |k: &usize| sides.is_cloth[*k];
+            if self.is_exempt(sides) {
+                return;
+            }
             if let Some(of) = of
                 && !(0..4).filter(is_cloth).any(|k| of[sides.vertices[k] as usize])
             {

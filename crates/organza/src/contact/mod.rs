@@ -9,6 +9,7 @@ mod pair;
 mod rest;
 mod search;
 mod slip;
+mod tangle;
 mod touch;
 
 use candidates::Candidates;
@@ -22,10 +23,12 @@ use pair::{ClosestPoints, Sides};
 use rest::RestSheet;
 use slip::Slip;
 use std::collections::HashSet;
+use tangle::{Joined, Start, Tangle};
 use touch::{Touch, approach};
 
 pub use crossings::Crossings;
 pub use obstacles::{Motion, Obstacles};
+pub use tangle::contour_length;
 
 /// How cloth touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +65,8 @@ pub struct SurfaceContact {
     distances: Vec<f64>,
     touches: Vec<Touch>,
     slips: Vec<Slip>,
+    /// What is tangled; absent where the start of a stage was found free.
+    tangle: Option<Tangle>,
     /// Mass over h² by vertex (N/m).
     inertia: Vec<f64>,
     /// Where the stage starts, and where it would end without forces (m).
@@ -94,6 +99,7 @@ impl SurfaceContact {
             distances: Vec::new(),
             touches: Vec::new(),
             slips: Vec::new(),
+            tangle: None,
             inertia: Vec::new(),
             x_t0: Vec::new(),
             target: Vec::new(),
@@ -119,6 +125,35 @@ impl SurfaceContact {
             }
         }
         self
+    }
+
+    /// The same contact of a cloth that passes through something, which it is led out of. Until nothing
+    /// passes through anything any more, obstacles let cloth pass within balls around the places
+    /// `yielding`, centre and radius (m).
+    #[must_use]
+    pub fn tangled(mut self, yielding: &[(World3, f64)]) -> SurfaceContact {
+        let obstacles = self.obstacles.as_ref().map(|moving| &moving.fixed.surface);
+        self.tangle = Some(Tangle::new(Joined::new(&self.cloth, obstacles), yielding.to_vec()));
+        self
+    }
+
+    /// Finds out what is tangled at the start of a stage.
+    fn begin_tangle(&mut self, x_t0: &[World3], duration: f64) {
+        let Some(mut tangle) = self.tangle.take() else { return };
+        let (now, then): (&[World3], &[World3]) = self.obstacle_way();
+        let start = Start {
+            x: x_t0,
+            obstacles: [now, then],
+            inertia: &self.inertia,
+            duration,
+            self_contact: self.settings.self_contact,
+        };
+        self.tangle = tangle.begin(&start).then_some(tangle);
+    }
+
+    /// Whether a pair may pass, because it is part of a tangle.
+    fn is_exempt(&self, sides: &Sides) -> bool {
+        self.tangle.as_ref().is_some_and(|tangle| tangle.is_exempt(sides))
     }
 
     /// The corners of a pair at the start of the stage (m).
@@ -219,6 +254,7 @@ impl Contact for SurfaceContact {
             self.off_target.clear();
         }
         self.h = stage.h;
+        self.begin_tangle(stage.x_t0, times[1] - times[0]);
         self.target = target.to_vec();
         let mut target = target.to_vec();
         target.iter_mut().zip(&self.off_target).for_each(|(target, off)| *target += off);
@@ -229,6 +265,9 @@ impl Contact for SurfaceContact {
             let sides = &pairs[k];
             let start = sides.closest(&self.corners_now(sides, stage.x_t0));
             let (distance, thickness) = (start.distance, sides.thickness);
+            if self.is_exempt(sides) {
+                return (distance, None, None);
+            }
             let touch = self.touch(sides, start, &target);
             let is_near = touch.is_some() && distance < thickness;
             (distance, touch, is_near.then_some((*sides, start)))
@@ -241,12 +280,15 @@ impl Contact for SurfaceContact {
     }
 
     fn couples(&self) -> Vec<[u32; 2]> {
-        self.touches.iter().flat_map(|touch| touch.sides.couples()).collect()
+        let touches = self.touches.iter().flat_map(|touch| touch.sides.couples());
+        let drives = self.tangle.iter().flat_map(|tangle| &tangle.drives);
+        touches.chain(drives.flat_map(|drive| drive.couples())).collect()
     }
 
     fn energy(&self, x: &[World3]) -> f64 {
         par::sum(self.touches.len(), |k| self.touches[k].energy(x))
             + par::sum(self.slips.len(), |k| self.slips[k].energy(x))
+            + self.tangle.as_ref().map_or(0.0, |tangle| tangle.energy(x))
     }
 
     fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {
@@ -255,6 +297,9 @@ impl Contact for SurfaceContact {
         }
         for slip in &self.slips {
             slip.add_system(x, gradient, stiffness);
+        }
+        for drive in self.tangle.iter().flat_map(|tangle| &tangle.drives) {
+            drive.add_system(x, gradient, stiffness);
         }
     }
 
@@ -273,7 +318,8 @@ impl Contact for SurfaceContact {
                 return;
             }
             let start = sides.closest(&from);
-            if start.distance - motion > thickness || known.contains(&sides.key()) {
+            let is_known = known.contains(&sides.key()) || self.is_exempt(sides);
+            if start.distance - motion > thickness || is_known {
                 return;
             }
             more.extend(self.touch(sides, start, x).filter(|touch| touch.gap(x) < thickness));

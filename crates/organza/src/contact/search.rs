@@ -20,7 +20,7 @@ impl SurfaceContact {
         }
     }
 
-    fn obstacle_way(&self) -> (&[World3], &[World3]) {
+    pub(super) fn obstacle_way(&self) -> (&[World3], &[World3]) {
         self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then))
     }
 
