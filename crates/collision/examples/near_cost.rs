@@ -49,7 +49,8 @@ fn folded(material: &[[f64; 2]], phase: f64) -> Vec<World3> {
             let angle = slope((f64::from(k) + 0.5) * step, t);
             x += World3::new(angle.cos(), 0.0, angle.sin()) * step;
         }
-        x + World3::new(1.0, 0.3, -1.0) * (0.05 * phase)
+        let sway = |a: f64| (9.0 * x[0] + 11.0 * t + 7.0 * x[2] + a).sin();
+        x + World3::new(sway(0.0), 0.3, sway(2.0)) * (0.2 * phase)
     };
     material.iter().map(at).collect()
 }
@@ -85,7 +86,7 @@ fn run() {
     println!("threads: {}", par::n_threads());
     let (list, flat) = (triangles(N), material(N, SIZE));
     let surface = Surface::new(flat.len(), &list).expect("indices in range");
-    let x = [folded(&flat, 0.0), folded(&flat, 0.12)];
+    let x = [folded(&flat, 0.0), folded(&flat, 0.04)];
     let n = flat.len() as f64;
     let drift = x[0].iter().zip(&x[1]).map(|(a, b)| b - a).sum::<World3>() / n;
     let x_t1: Vec<World3> = x[1].iter().map(|x| x - drift).collect();

@@ -1,7 +1,7 @@
 //! What lies around each vertex, in order.
 
 /// A vertex with more triangles than this has no ring.
-pub(crate) const MOST: usize = 16;
+pub(crate) const MOST: usize = 8;
 
 /// The ring of every vertex: the other corners of its triangles, one after the other, so that each
 /// triangle has two neighbours of the ring. It begins and ends at the boundary, or with the same vertex.
@@ -11,6 +11,8 @@ pub(crate) struct Rings {
     /// Where the ring of each vertex begins in `around`, and where the last one ends.
     starts: Vec<u32>,
     around: Vec<u32>,
+    /// The triangle after each vertex of a ring; for the last one, that before it.
+    triangles: Vec<u32>,
 }
 
 impl Rings {
@@ -20,21 +22,23 @@ impl Rings {
         for v in 0..n_vertices {
             ends[v + 1] += ends[v];
         }
-        let mut sides = vec![[0; 2]; 3 * triangles.len()];
+        let mut sides = vec![[0; 3]; 3 * triangles.len()];
         let mut at = ends.clone();
-        for corners in triangles {
+        for (t, corners) in (0..).zip(triangles) {
             for k in 0..3 {
                 let slot = &mut at[corners[k] as usize];
-                sides[*slot] = [corners[(k + 1) % 3], corners[(k + 2) % 3]];
+                sides[*slot] = [corners[(k + 1) % 3], corners[(k + 2) % 3], t];
                 *slot += 1;
             }
         }
-        let mut rings = Rings { starts: vec![0], around: Vec::with_capacity(4 * triangles.len()) };
+        let mut rings = Rings { starts: vec![0], around: Vec::new(), triangles: Vec::new() };
         for v in 0..n_vertices {
             let own = &mut sides[ends[v]..ends[v + 1]];
             if chain(own) {
                 rings.around.push(own[0][0]);
                 rings.around.extend(own.iter().map(|side| side[1]));
+                rings.triangles.extend(own.iter().map(|side| side[2]));
+                rings.triangles.push(own[own.len() - 1][2]);
             }
             rings.starts.push(rings.around.len() as u32);
         }
@@ -42,24 +46,34 @@ impl Rings {
     }
 
     /// Adds rings of vertices that follow these.
-    pub(crate) fn extend(&mut self, other: &Rings) {
+    pub(crate) fn extend(&mut self, other: &Rings, n_triangles: u32) {
         let (v, start) = (self.starts.len() as u32 - 1, self.around.len() as u32);
         self.starts.extend(other.starts[1..].iter().map(|s| s + start));
         self.around.extend(other.around.iter().map(|x| x + v));
+        self.triangles.extend(other.triangles.iter().map(|x| x + n_triangles));
     }
 
+    /// The ring of a vertex.
     #[inline]
     pub(crate) fn of(&self, vertex: usize) -> &[u32] {
         &self.around[self.starts[vertex] as usize..self.starts[vertex + 1] as usize]
     }
+
+    /// The triangles around a vertex, in the order of its ring: triangle i is between its places i and
+    /// i + 1.
+    #[inline]
+    pub(crate) fn triangles_of(&self, vertex: usize) -> &[u32] {
+        let (start, end) = (self.starts[vertex] as usize, self.starts[vertex + 1] as usize);
+        &self.triangles[start..end.max(start + 1) - 1]
+    }
 }
 
 /// Orders sides such that each begins where the one before it ends, if they can all be had so.
-fn chain(sides: &mut [[u32; 2]]) -> bool {
+fn chain(sides: &mut [[u32; 3]]) -> bool {
     if sides.is_empty() || sides.len() > MOST {
         return false;
     }
-    let is_first = |a: &[u32; 2]| sides.iter().all(|b| b[1] != a[0]);
+    let is_first = |a: &[u32; 3]| sides.iter().all(|b| b[1] != a[0]);
     let first = sides.iter().position(is_first);
     sides.swap(0, first.unwrap_or(0));
     for i in 1..sides.len() {
@@ -80,7 +94,8 @@ mod tests {
     fn rings_are_closed_inside_and_open_at_the_boundary() {
         let rings = Rings::new(5, &[[2, 0, 4], [0, 1, 4], [1, 3, 4], [3, 2, 4]]);
         assert_eq!(rings.of(4), [2, 0, 1, 3, 2]);
-        assert_eq!(rings.of(0), [1, 4, 2]);
+        assert_eq!(rings.triangles_of(4), [0, 1, 2, 3]);
+        assert_eq!((rings.of(0), rings.triangles_of(0)), (&[1, 4, 2][..], &[1, 0][..]));
     }
 
     #[test]

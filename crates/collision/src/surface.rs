@@ -120,7 +120,7 @@ impl Surface {
         all.starts.extend(other.starts.iter().map(|s| s + self.around.len() as u32));
         all.around.extend(other.around.iter().map(|x| x + t));
         all.owned.extend(&other.owned);
-        all.rings.extend(&other.rings);
+        all.rings.extend(&other.rings, t);
         all
     }
 

@@ -1,100 +1,301 @@
-//! Vertices around which nothing comes near anything.
+//! Pairs of triangles with a common vertex: most of the pairs whose boxes overlap, and of almost none of
+//! them the features that have no vertex in common are near each other.
 //!
-//! Most pairs of triangles whose boxes overlap have a vertex in common, and on a surface without sharp
-//! folds none of their features are near each other. This is told once for all triangles around a
-//! vertex p, its fan. Let n be a unit vector, r_0, r_1, ... the ring, e_i the way from p to r_i, and T_i
-//! the triangle p r_i r_(i+1) with the longest edge L_i. If
+//! No axis separates such triangles, but what is left of them without what they share can be separated.
+//! Let p be the vertex, and the triangles around it be p u v and p U V.
 //!
-//! - n · (e_i × e_(i+1)) > R L_i for all i, and
-//! - seen along n, the fan goes around p at most once, and if it is open the gap is of a right angle or
-//!   more, or n · (e_last × e_0) > R max(|e_last|, |e_0|) there as well,
+//! - If they have only p in common: of two features without a common vertex, one is without p, so that
+//!   it is a part of the edge u v or of U V. It is enough that u v is far from the triangle p U V, and
+//!   U V from p u v.
+//! - If they follow upon each other, v = U = q, with a = u and b = V: the pairs are a and the triangle
+//!   p q b, b and p q a, the edges p a and q b, and q a and p b.
 //!
-//! then any two features of the fan without a common vertex are more than R apart.
-//!
-//! *Proof.* Projection along n only brings things nearer, so look at the projected fan. Lengths of edges
-//! are there at most L_i, so that every height of every T_i is more than R, and the triangles lie in
-//! sectors around p, of angles below π, that do not overlap: they are embedded. Let α be the angle
-//! between e_i and a neighbouring spoke, and y a point of the fan off p that T_i and T_(i−1) do not
-//! contain: its angle from e_i is at least the α on its side. If it is a right angle or more, y is
-//! |e_i| > R or more away from r_i; if not, |e_i| sin α or more, and this is the height of r_i over the
-//! spoke, or |e_i| if α is a right angle or more. The same holds across the gap. And p is more than R
-//! from the sides of the ring by the heights over them. So every vertex is more than R from every edge
-//! and triangle that does not contain it. The distance of disjoint segments in a plane is that of an
-//! end of one of them from the other. ∎
-//!
-//! With R the largest sum of two radii and the largest relative motion in the fan, no pair of features
-//! of it can be near. Cloth that is flat or bent gently passes if the radii are small against the
-//! heights of its triangles; whatever does not pass is looked at pair by pair.
+//! For each of them a few axes are tried that separate them where the surface is flat. The tests go
+//! around the vertex, all triangles at a time, in single precision and in units of the longest edge; what
+//! is lost by that is added to the room.
 
+use super::quads::{RELATIVE, SLACK};
 use crate::pairs::Body;
 use crate::rings;
 use mesh_core::{World3, par};
 
-/// By what R is enlarged (1): far above rounding.
-const ROUNDING: f64 = 1e-6;
+/// A number for each triangle around a vertex.
+const LANES: usize = rings::MOST;
+type Row = [f32; LANES];
+/// Twice around, to look ahead by any number of triangles.
+type Twice = [f32; 2 * LANES];
+/// Vectors shorter than this have no direction (in units of the longest edge): the square of their
+/// length loses digits.
+const SHORT: f32 = 1e-15;
 
-/// For each vertex, true if all features around it without a common vertex certainly stay apart by more
-/// than their radii.
-pub(super) fn clear(body: Body<'_>) -> Vec<bool> {
-    let mut clear = vec![false; body.surface().n_vertices()];
-    par::fill(&mut clear, |p| is_clear(body, p));
-    clear
+/// All pairs of triangles around vertices with a ring whose features without a common vertex may be
+/// near. Of two that have an edge in common, and then belong to two vertices, none is given twice.
+pub(super) fn pairs(body: Body<'_>) -> Vec<[u32; 2]> {
+    par::collect(body.surface().n_vertices(), |p, pairs| around(body, p, pairs))
 }
 
-fn is_clear(body: Body<'_>, p: usize) -> bool {
-    let ring = body.surface().rings().of(p);
-    // One triangle has no pairs.
-    if ring.len() < 3 {
-        return false;
+/// Whether the pairs around a vertex are among [`pairs`].
+pub(super) fn covers(body: Body<'_>, p: u32) -> bool {
+    !body.surface().rings().of(p as usize).is_empty()
+}
+
+fn around(body: Body<'_>, p: usize, pairs: &mut Vec<[u32; 2]>) {
+    let rings = body.surface().rings();
+    let (ring, triangles) = (rings.of(p), rings.triangles_of(p));
+    let n = triangles.len();
+    if n < 2 {
+        return;
     }
-    let n = ring.len() - 1;
-    let mut spokes = [World3::zeros(); rings::MOST + 1];
-    let mut radius = body.radius(p as u32);
-    let (start, motion) = (body.x_t0()[p], body.motion(p));
-    let mut moved: f64 = 0.0;
-    for (spoke, &r) in spokes.iter_mut().zip(ring) {
-        *spoke = body.x_t0()[r as usize] - start;
-        radius = radius.max(body.radius(r));
-        moved = moved.max((body.motion(r as usize) - motion).norm_squared());
+    let is_closed = ring[0] == ring[n];
+    let fan = Fan::new(body, p, ring);
+    // Of each triangle, bits of those ahead that its outer edge is far from.
+    let mut far = [0u32; LANES];
+    for ahead in if is_closed { 2..n - 1 } else { 1..n } {
+        let clear = fan.outer_edges_far(ahead);
+        for i in 0..n {
+            far[i] |= u32::from(clear[i]) << ((i + ahead) % n);
+        }
     }
-    let mut normals = [World3::zeros(); rings::MOST];
-    let mut sum = World3::zeros();
     for i in 0..n {
-        normals[i] = spokes[i].cross(&spokes[i + 1]);
-        sum += normals[i];
+        for j in i + 2..n {
+            let follow = is_closed && i == 0 && j == n - 1;
+            if !follow && (far[i] >> j & far[j] >> i & 1) == 0 {
+                pairs.push([triangles[i], triangles[j]]);
+            }
+        }
     }
-    let axis = sum / sum.norm();
-    let room = (2.0 * (radius + moved.sqrt())) * (1.0 + ROUNDING);
-    // True if the triangle of two spokes, with this area seen along the axis, is high enough. What is
-    // no number is not.
-    let is_high = |area: f64, longest: f64| {
-        (area > ROUNDING * longest) & (area * area > room * room * longest)
-    };
-    let mut lengths = [0.0; rings::MOST + 1];
-    for i in 0..=n {
-        lengths[i] = spokes[i].norm_squared();
+    let clear = fan.followers_far();
+    for i in 0..if is_closed { n } else { n - 1 } {
+        let q = ring[i + 1];
+        let is_mine = (p as u32) < q || !covers(body, q);
+        if is_mine && !clear[i] {
+            pairs.push([triangles[i], triangles[(i + 1) % n]]);
+        }
     }
-    let mut is_clear = true;
-    // Which side of the first spoke the others are on: the fan comes around as often as it crosses it
-    // from right to left.
-    let across = axis.cross(&spokes[0]);
-    let mut turns = 0;
-    let mut is_right = false;
-    for i in 0..n {
-        let side = (spokes[i + 1] - spokes[i]).norm_squared();
-        is_clear &= is_high(axis.dot(&normals[i]), lengths[i].max(lengths[i + 1]).max(side));
-        let is_closed = i + 1 == n && ring[n] == ring[0];
-        let now = !is_closed && across.dot(&spokes[i + 1]) < 0.0;
-        turns += usize::from(is_right & !now);
-        is_right = now;
+}
+
+/// The triangles around a vertex, which is the origin.
+struct Fan {
+    /// Their first and second other corners.
+    spokes: [[Twice; 3]; 2],
+    /// How these move against the vertex.
+    motions: [[Twice; 3]; 2],
+    /// Largest radius, of all corners and of the outer edge.
+    radius: Twice,
+    outer_radius: Twice,
+    /// From the vertex to the nearest point of the outer edge, and how far all of this edge is along it.
+    outwards: [Twice; 3],
+    height: Twice,
+    /// In the plane of the triangle across each spoke, towards the other one.
+    inwards: [[Twice; 3]; 2],
+}
+
+impl Fan {
+    fn new(body: Body<'_>, p: usize, ring: &[u32]) -> Fan {
+        let n = ring.len() - 1;
+        let zero = [0.0; 2 * LANES];
+        let mut fan = Fan {
+            spokes: [[zero; 3]; 2],
+            motions: [[zero; 3]; 2],
+            radius: zero,
+            outer_radius: zero,
+            outwards: [zero; 3],
+            height: zero,
+            inwards: [[zero; 3]; 2],
+        };
+        let (start, motion) = (body.x_t0()[p], body.motion(p));
+        let mut spokes = [World3::zeros(); LANES + 1];
+        let mut longest: f64 = 0.0;
+        for (spoke, &r) in spokes.iter_mut().zip(ring) {
+            *spoke = body.x_t0()[r as usize] - start;
+            longest = longest.max(spoke.norm_squared());
+        }
+        let unit = 1.0 / longest.sqrt();
+        let own = body.radius(p as u32);
+        for (i, &r) in ring.iter().enumerate() {
+            let spoke = spokes[i] * unit;
+            let moved = (body.motion(r as usize) - motion) * unit;
+            let radius = (body.radius(r) * unit) as f32;
+            // The first corner of one triangle, and the second of that before it.
+            for (side, at) in [(0, i), (1, i + n - 1)] {
+                let at = at % n;
+                if (side == 0 && i == n) || (side == 1 && i == 0) {
+                    continue;
+                }
+                for k in 0..3 {
+                    fan.spokes[side][k][at] = spoke[k] as f32;
+                    fan.motions[side][k][at] = moved[k] as f32;
+                }
+                fan.outer_radius[at] = fan.outer_radius[at].max(radius);
+            }
+        }
+        for at in 0..LANES {
+            fan.radius[at] = fan.outer_radius[at].max((own * unit) as f32);
+        }
+        let (u, v) = (fan.spoke(0, 0), fan.spoke(1, 0));
+        let side = minus(&v, &u);
+        let (along, squared) = (dot(&u, &side), dot(&side, &side));
+        let share: Row = std::array::from_fn(|l| (-along[l] / squared[l]).clamp(0.0, 1.0));
+        let of = |k: usize| -> Row { std::array::from_fn(|l| u[k][l] + share[l] * side[k][l]) };
+        let outwards = unit_vector(&[of(0), of(1), of(2)]);
+        let height = lower(&dot(&outwards, &u), &dot(&outwards, &v));
+        let inwards = [unit_vector(&rejected(&v, &u)), unit_vector(&rejected(&u, &v))];
+        fan.height[..LANES].copy_from_slice(&height);
+        for k in 0..3 {
+            fan.outwards[k][..LANES].copy_from_slice(&outwards[k]);
+            fan.inwards[0][k][..LANES].copy_from_slice(&inwards[0][k]);
+            fan.inwards[1][k][..LANES].copy_from_slice(&inwards[1][k]);
+        }
+        let all = fan.spokes.iter_mut().chain(&mut fan.motions).chain(&mut fan.inwards).flatten();
+        let rows = [&mut fan.radius, &mut fan.outer_radius, &mut fan.height];
+        for row in all.chain(&mut fan.outwards).chain(rows) {
+            for i in 0..LANES {
+                row[n + i] = row[i];
+            }
+        }
+        fan
     }
-    let around = if ring[n] == ring[0] {
-        turns == 1
-    } else {
-        let (first, last) = (&spokes[0], &spokes[n]);
-        let flat = last.dot(first) - last.dot(&axis) * first.dot(&axis);
-        let gap = -across.dot(last);
-        turns == 0 && (flat <= 0.0 || is_high(gap, lengths[0].max(lengths[n])))
-    };
-    is_clear & around
+
+    #[inline]
+    fn spoke(&self, side: usize, ahead: usize) -> [Row; 3] {
+        vector(&self.spokes[side], ahead)
+    }
+
+    /// For each triangle, whether its outer edge is far from all of the one so far ahead.
+    #[inline]
+    fn outer_edges_far(&self, ahead: usize) -> [bool; LANES] {
+        let own = [self.spoke(0, 0), self.spoke(1, 0)];
+        let other = [self.spoke(0, ahead), self.spoke(1, ahead)];
+        let moved = [vector(&self.motions[0], 0), vector(&self.motions[1], 0)];
+        let moves = [vector(&self.motions[0], ahead), vector(&self.motions[1], ahead)];
+        let mut most = upper(&dot(&moved[0], &moved[0]), &dot(&moved[1], &moved[1]));
+        for a in &moved {
+            for b in &moves {
+                let m = minus(a, b);
+                most = upper(&most, &dot(&m, &m));
+            }
+        }
+        let reach = reach(&self.outer_radius, &row(&self.radius, ahead), &most);
+        let outwards = vector(&self.outwards, 0);
+        let theirs = vector(&self.outwards, ahead);
+        let beyond = upper(&dot(&outwards, &other[0]), &dot(&outwards, &other[1]));
+        let behind = upper(&dot(&theirs, &own[0]), &dot(&theirs, &own[1]));
+        let (height, low) = (row(&self.height, 0), row(&self.height, ahead));
+        let mut far: [bool; LANES] = std::array::from_fn(|l| {
+            (height[l] - beyond[l].max(0.0) > reach[l]) | (low[l].min(0.0) - behind[l] > reach[l])
+        });
+        for side in 0..2 {
+            // All of the other triangle is on the inner side of its spokes.
+            let inwards = vector(&self.inwards[side], ahead);
+            let outside = upper(&dot(&inwards, &own[0]), &dot(&inwards, &own[1]));
+            for l in 0..LANES {
+                far[l] |= -outside[l] > reach[l];
+            }
+        }
+        far
+    }
+
+    /// For each triangle, whether all its features are far from those of the next one with which they
+    /// have no vertex in common.
+    #[inline]
+    fn followers_far(&self) -> [bool; LANES] {
+        let (a, q, b) = (self.spoke(0, 0), self.spoke(1, 0), self.spoke(1, 1));
+        let of = |side: usize, ahead: usize| vector(&self.motions[side], ahead);
+        let (m, n, o) = (of(0, 0), of(1, 0), of(1, 1));
+        let mut most = [0.0; LANES];
+        for way in [m, n, o, minus(&m, &n), minus(&m, &o), minus(&n, &o)] {
+            most = upper(&most, &dot(&way, &way));
+        }
+        let reach = reach(&self.radius, &row(&self.radius, 1), &most);
+        // Across the common edge.
+        let (to_a, to_b) = (vector(&self.inwards[1], 0), vector(&self.inwards[0], 1));
+        let gap = |axis: &[Row; 3], near: &[Row; 3], far: [&[Row; 3]; 2]| -> Row {
+            let (front, back) = (dot(axis, near), upper(&dot(axis, far[0]), &dot(axis, far[1])));
+            std::array::from_fn(|l| front[l] - back[l].max(0.0))
+        };
+        let first = gap(&to_a, &a, [&q, &b]);
+        let second = gap(&to_b, &b, [&q, &a]);
+        // Edges p a and q b: across q b, or across p a.
+        let edges = |ahead: usize, side: &[Row; 3], a: &[Row; 3], b: &[Row; 3]| -> Row {
+            let back = dot(&vector(&self.outwards, ahead), a);
+            let height = row(&self.height, ahead);
+            let front = lower(&dot(side, &q), &dot(side, b));
+            let behind = dot(side, a);
+            std::array::from_fn(|l| {
+                (height[l] - back[l].max(0.0)).max(front[l] - behind[l].max(0.0))
+            })
+        };
+        let third = edges(1, &vector(&self.inwards[0], 0), &a, &b);
+        let fourth = edges(0, &vector(&self.inwards[1], 1), &b, &a);
+        std::array::from_fn(|l| {
+            (first[l] > reach[l])
+                & (second[l] > reach[l])
+                & (third[l] > reach[l])
+                & (fourth[l] > reach[l])
+        })
+    }
+}
+
+/// How near things with these radii may be without coming into contact, with this square of their
+/// greatest relative motion.
+#[inline]
+fn reach(radius: &Twice, other: &Row, squared: &Row) -> Row {
+    std::array::from_fn(|l| (radius[l] + other[l] + squared[l].sqrt()) * (1.0 + RELATIVE) + SLACK)
+}
+
+#[inline]
+fn row(twice: &Twice, ahead: usize) -> Row {
+    let mut row = [0.0; LANES];
+    row.copy_from_slice(&twice[ahead..ahead + LANES]);
+    row
+}
+
+#[inline]
+fn vector(twice: &[Twice; 3], ahead: usize) -> [Row; 3] {
+    [row(&twice[0], ahead), row(&twice[1], ahead), row(&twice[2], ahead)]
+}
+
+#[inline]
+fn dot(a: &[Row; 3], b: &[Row; 3]) -> Row {
+    std::array::from_fn(|l| a[0][l] * b[0][l] + a[1][l] * b[1][l] + a[2][l] * b[2][l])
+}
+
+#[inline]
+fn minus(a: &[Row; 3], b: &[Row; 3]) -> [Row; 3] {
+    let of = |k: usize| -> Row { std::array::from_fn(|l| a[k][l] - b[k][l]) };
+    [of(0), of(1), of(2)]
+}
+
+// What is no number, in either place, stays so or makes its lane's vectors useless: see `Fan::reach`.
+#[inline]
+fn upper(a: &Row, b: &Row) -> Row {
+    std::array::from_fn(|l| if a[l] > b[l] { a[l] } else { b[l] })
+}
+
+#[inline]
+fn lower(a: &Row, b: &Row) -> Row {
+    std::array::from_fn(|l| if a[l] < b[l] { a[l] } else { b[l] })
+}
+
+/// The part of `a` across `b`.
+#[inline]
+fn rejected(a: &[Row; 3], b: &[Row; 3]) -> [Row; 3] {
+    let (along, squared) = (dot(a, b), dot(b, b));
+    let share: Row = std::array::from_fn(|l| along[l] / squared[l]);
+    let of = |k: usize| -> Row { std::array::from_fn(|l| a[k][l] - share[l] * b[k][l]) };
+    [of(0), of(1), of(2)]
+}
+
+/// The unit vector, or none if the vector is too short.
+#[inline]
+fn unit_vector(a: &[Row; 3]) -> [Row; 3] {
+    let squared = dot(a, a);
+    let by: Row =
+        std::array::from_fn(
+            |l| {
+                if squared[l] > SHORT * SHORT { 1.0 / squared[l].sqrt() } else { 0.0 }
+            },
+        );
+    let of = |k: usize| -> Row { std::array::from_fn(|l| a[k][l] * by[l]) };
+    [of(0), of(1), of(2)]
 }

@@ -12,9 +12,9 @@ type Four = [f32; 4];
 
 /// More than the rounding errors of a gap between points whose coordinates are at most 1: those of the
 /// points are 2⁻²⁴ and less, and those of the some ten operations on them not much larger.
-const SLACK: f32 = 4e-6;
+pub(super) const SLACK: f32 = 4e-6;
 /// More than the rounding errors of a length by its size (1).
-const RELATIVE: f32 = 1e-5;
+pub(super) const RELATIVE: f32 = 1e-5;
 /// The key of a vertex that is common to nothing, in the first and in the second triangle.
 const NO_KEY: [u32; 2] = [u32::MAX, u32::MAX - 1];
 
@@ -55,9 +55,14 @@ pub(super) struct Quad {
 }
 
 impl Quad {
-    /// Triangles of a body, up to four. Vertices that are clear are those of which triangles that have
-    /// them in common are left out.
-    pub(super) fn new(body: Body<'_>, frame: &Frame, triangles: &[u32], clear: &[bool]) -> Quad {
+    /// Triangles of a body, up to four. Those with a vertex in common that is covered are left
+    /// out when they are compared.
+    pub(super) fn new(
+        body: Body<'_>,
+        frame: &Frame,
+        triangles: &[u32],
+        is_covered: impl Fn(u32) -> bool + Sync,
+    ) -> Quad {
         let zero = [0.0; 4];
         let mut quad = Quad {
             lo: [[f32::INFINITY; 4]; 3],
@@ -71,12 +76,19 @@ impl Quad {
             triangles: [u32::MAX; 4],
         };
         for (l, &t) in triangles.iter().enumerate() {
-            quad.set(l, t, body, frame, clear);
+            quad.set(l, t, body, frame, &is_covered);
         }
         quad
     }
 
-    fn set(&mut self, l: usize, t: u32, body: Body<'_>, frame: &Frame, clear: &[bool]) {
+    fn set(
+        &mut self,
+        l: usize,
+        t: u32,
+        body: Body<'_>,
+        frame: &Frame,
+        is_covered: impl Fn(u32) -> bool + Sync,
+    ) {
         let vertices = body.surface().triangles()[t as usize];
         let scaled = |x: &World3| (x - frame.origin) * frame.scale;
         let x = vertices.map(|v| scaled(&body.x_t0()[v as usize]));
@@ -103,8 +115,7 @@ impl Quad {
                 self.axes[c][k][l] = axes[c][k] as f32;
             }
             let v = vertices[k];
-            self.keys[k][l] =
-                if clear.get(v as usize).is_some_and(|&clear| clear) { v } else { NO_KEY[0] };
+            self.keys[k][l] = if is_covered(v) { v } else { NO_KEY[0] };
         }
         for c in 0..4 {
             let reach = x.map(|x| axes[c].dot(&x));
@@ -115,7 +126,7 @@ impl Quad {
     }
 
     /// Which triangles of `other` may come near triangle `i` of this: those whose swept boxes overlap its
-    /// own, and which no axis separates by more than radii and relative motion. Those with a clear
+    /// own, and which no axis separates by more than radii and relative motion. Those with a covered
     /// vertex in common are left out. A comparison with what is no number separates nothing.
     #[inline]
     pub(super) fn may_meet(&self, i: usize, other: &Quad) -> [bool; 4] {
@@ -199,13 +210,13 @@ impl Quads {
         tree: &Bvh,
         groups: &[u32],
         frame: &Frame,
-        clear: &[bool],
+        is_covered: impl Fn(u32) -> bool + Sync,
     ) -> Quads {
         let mut place = vec![u32::MAX; tree.n_groups()];
         (0..).zip(groups).for_each(|(k, &group)| place[group as usize] = k);
-        let mut quads = vec![Quad::new(body, frame, &[], clear); groups.len()];
+        let mut quads = vec![Quad::new(body, frame, &[], &is_covered); groups.len()];
         par::fill(&mut quads, |k| {
-            Quad::new(body, frame, tree.elements_of(groups[k] as usize), clear)
+            Quad::new(body, frame, tree.elements_of(groups[k] as usize), &is_covered)
         });
         Quads { place, quads }
     }
