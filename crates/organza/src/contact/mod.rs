@@ -43,6 +43,8 @@ pub struct ContactSettings {
 
 /// Share of the thickness below which a gap that no energy keeps open is worth one.
 const OVERLOOKED: f64 = 0.5;
+/// By what the stiffness of things grows at most that are pressed together.
+const MOST_PRESSED: f64 = 10.0;
 /// Speed at which things that are nearer than their thickness go apart at most (m/s): without it,
 /// whatever brings them nearer at once, an impact or an edit of the mesh, would throw them apart.
 const RECOVERY: f64 = 0.1;
@@ -182,11 +184,12 @@ impl SurfaceContact {
         if sides.is_within_cloth() { thickness.min(self.rest.most(sides)) } else { thickness }
     }
 
-    /// Stiffness of a pair (N/m).
-    fn stiffness(&self, sides: &Sides) -> f64 {
+    /// Stiffness of a pair at some distance (N/m): what has been pressed together resists more.
+    fn stiffness(&self, sides: &Sides, distance: f64) -> f64 {
         let cloth = (0..4).filter(|&k| sides.is_cloth[k]);
         let of = |k: usize| self.inertia[sides.vertices[k] as usize];
-        STIFFNESS * cloth.clone().map(of).sum::<f64>() / cloth.count() as f64
+        let pressed = (sides.thickness / distance).clamp(1.0, MOST_PRESSED);
+        pressed * STIFFNESS * cloth.clone().map(of).sum::<f64>() / cloth.count() as f64
     }
 
     /// Gap below which a pair at some distance repels each other in this stage (m).
@@ -201,7 +204,7 @@ impl SurfaceContact {
         let closest = approach(sides, [&from, &to], start, thickness)?;
         // The distance to the end of an edge is that of a vertex, which has a pair of its own.
         let is_repeated = sides.is_edges && closest.weights.contains(&0.0);
-        let new = || Touch::new(*sides, &closest, &to, thickness, self.stiffness(sides));
+        let new = || Touch::new(*sides, &closest, &to, thickness, self.stiffness(sides, start.distance));
         (!is_repeated).then(new)
     }
 
@@ -227,7 +230,7 @@ impl SurfaceContact {
                     way += (moving.then[i] - before[i]) * closest.weights[k];
                 }
             }
-            let most = -slope * self.stiffness(sides) * mu;
+            let most = -slope * self.stiffness(sides, closest.distance) * mu;
             self.slips.extend(Slip::new(*sides, closest, most, way, STICK * stage.h));
         }
         for slip in &mut self.slips {
