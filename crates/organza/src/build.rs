@@ -6,7 +6,7 @@ mod piece;
 
 pub(crate) use piece::Piece;
 
-use crate::contact::{ContactSettings, Crossings};
+use crate::contact::ContactSettings;
 use crate::handles::Handles;
 use crate::obstacle::Obstacle;
 use crate::scene::{self, Loaded, limits};
@@ -75,16 +75,6 @@ pub enum BuildError {
         /// What is wrong.
         message: String,
     },
-    /// Cloth passes through something from the start.
-    #[error(
-        "{} edges pass through triangles in the initial state, the first{} at ({:.4}, {:.4}, {:.4}) m",
-        .0.n,
-        if .0.with_obstacle { " with an obstacle" } else { "" },
-        .0.place.x,
-        .0.place.y,
-        .0.place.z
-    )]
-    Tangled(Crossings),
     /// The system would be too large.
     #[error("the scene is too large: {0}")]
     TooLarge(String),

@@ -117,6 +117,7 @@ pub fn restore(world: &mut World, checkpoint: &Checkpoint) -> Result<(), Restore
     world.handles = handles;
     world.frame = frame;
     world.forget();
+    world.note_tangles();
     Ok(())
 }
 

@@ -110,6 +110,12 @@ pub struct FrameReport {
     pub shortened_ways: usize,
     /// Edges that pass through triangles at the end of the frame; absent without contact.
     pub crossings: Option<usize>,
+    /// Places where obstacles let cloth through, because it had no room.
+    #[serde(default)]
+    pub yielded: usize,
+    /// What the user should know of this frame.
+    #[serde(default)]
+    pub warnings: Vec<String>,
     /// Largest change of velocity in a last iteration (m/s).
     pub residual_m_per_s: f64,
     /// Extreme principal stretches.
@@ -129,7 +135,7 @@ impl FrameReport {
     pub fn initial(world: &World) -> FrameReport {
         let solve = SolveReport::default();
         let stretch = StretchRange::of(&world.cloth);
-        let crossings = world.contact.map(|_| 0);
+        let crossings = world.contact.map(|_| world.crossings(world.frame).map_or(0, |c| c.n));
         FrameReport::new(world, 0, 0, &solve, None, crossings, stretch, Seconds::default())
     }
 
@@ -160,6 +166,8 @@ impl FrameReport {
             contacts: solve.touches,
             shortened_ways: solve.shortened,
             crossings,
+            yielded: 0,
+            warnings: Vec::new(),
             residual_m_per_s: solve.residual,
             stretch: Some(stretch),
             remesh: remesh.map(|r| RemeshSummary {

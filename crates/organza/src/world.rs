@@ -1,6 +1,7 @@
 //! The world: state and policies of a running scene, and the step.
 
 mod bodies;
+mod tangled;
 #[cfg(test)]
 mod tests;
 
@@ -23,6 +24,7 @@ use mesh_core::{ClothState, World3};
 use remesh::SizingField;
 use std::sync::Arc;
 use std::time::Instant;
+use tangled::Tangled;
 
 /// Why a frame could not be finished. The world is as it was after the last finished frame.
 #[derive(Debug, thiserror::Error)]
@@ -46,25 +48,6 @@ pub enum StepError {
         frame: u64,
         /// What was too large.
         message: String,
-    },
-    /// An obstacle comes where cloth is.
-    #[error(
-        "frame {frame}: obstacle `{obstacle}` appears at {time} s where cloth is: {} edges pass through \
-         triangles, the first at ({:.4}, {:.4}, {:.4}) m",
-        .crossings.n,
-        .crossings.place.x,
-        .crossings.place.y,
-        .crossings.place.z
-    )]
-    InTheWay {
-        /// The frame that was being made.
-        frame: u64,
-        /// Name of the obstacle.
-        obstacle: String,
-        /// Time at the start of the step (s).
-        time: f64,
-        /// What passes through what.
-        crossings: Crossings,
     },
     /// A remeshing setting is out of range.
     #[error("frame {frame}: {source}")]
@@ -97,6 +80,8 @@ pub struct World {
     pub contact: Option<ContactSettings>,
     /// The obstacles that are there, as the contact sees them.
     bodies: Bodies,
+    /// What passes through what.
+    tangled: Tangled,
     /// What the user should know about how the scene was built.
     pub warnings: Vec<String>,
     fabrics: Arc<Vec<Fabric>>,
@@ -138,6 +123,8 @@ enum PrepareError {
 const HOLD_ROUNDS: u32 = 4;
 /// How often a failing step is halved before the run ends.
 const MAX_HALVINGS: u32 = 6;
+/// How often it is halved before obstacles let caught cloth through.
+const YIELD_DEPTH: u32 = 3;
 
 impl World {
     /// Builds the world of a loaded scene.
@@ -181,6 +168,7 @@ impl World {
             obstacles,
             contact,
             bodies,
+            tangled: Tangled::default(),
             warnings,
             fabrics: Arc::new(fabrics),
             environment: Environment { gravity: World3::from(scene.gravity), wind },
@@ -194,11 +182,12 @@ impl World {
             solver: solver.build(settings),
             prepared: None,
         };
-        world.prepare().map_err(|e| BuildError::TooLarge(e.to_string()))?;
-        match world.crossings(0) {
-            Some(crossings) => Err(BuildError::Tangled(crossings)),
-            None => Ok(world),
+        if let Some(crossings) = world.crossings(0) {
+            world.note_crossings(Some(&crossings));
+            world.warnings.push(World::tangle_warning("in the initial state", &crossings));
         }
+        world.prepare().map_err(|e| BuildError::TooLarge(e.to_string()))?;
+        Ok(world)
     }
 
     /// Puts a sizing field of your own in the place of the one in use, which `field` is given to
@@ -235,11 +224,13 @@ impl World {
         self.make_frame().inspect_err(|_| {
             (self.cloth.x, self.cloth.v, self.handles) = start;
             self.forget();
+            self.note_tangles();
         })
     }
 
     fn make_frame(&mut self) -> Result<FrameReport, StepError> {
         let frame = self.frame + 1;
+        self.tangled.warnings.clear();
         let (mut solve, mut seconds, mut retries) = (SolveReport::default(), Seconds::default(), 0);
         let clock = Instant::now();
         let h = self.frame_s / f64::from(self.substeps);
@@ -249,7 +240,7 @@ impl World {
         }
         let stretch = StretchRange::of(&self.cloth);
         let mut remesh = None;
-        let mut n_crossings = 0;
+        let mut crossings = None;
         if let Some(remeshing) = &self.remeshing {
             let (before, next) = (self.cloth.mesh.uids().to_vec(), self.cloth.mesh.next_uid());
             let keep = self.handles.names();
@@ -262,13 +253,21 @@ impl World {
             if let Some(saved) = saved {
                 // Where flips and collapses took cloth through something, only splits are made next
                 // time; in the end, everywhere.
-                let mut hold = Vec::new();
+                let tangled = self.tangled.matters();
+                let length = |world: &World| if tangled { world.contour_length(frame) } else { 0.0 };
+                let (edited, mut hold) = (std::mem::replace(&mut self.cloth, saved), Vec::new());
+                let before = length(self);
+                let saved = std::mem::replace(&mut self.cloth, edited);
                 for round in 0..=HOLD_ROUNDS {
-                    let crossings = self.crossings(frame);
-                    n_crossings = crossings.as_ref().map_or(0, |crossings| crossings.n);
-                    let Some(crossings) = crossings.filter(|_| report.n_edits() > 0) else { break };
+                    crossings = self.crossings(frame);
+                    let Some(found) = crossings.as_ref().filter(|_| report.n_edits() > 0) else {
+                        break;
+                    };
+                    if before > 0.0 && length(self) <= before {
+                        break;
+                    }
                     self.cloth = saved.clone();
-                    hold.extend(crossings.vertices_near(&self.cloth));
+                    hold.extend(found.vertices_near(&self.cloth));
                     if round == HOLD_ROUNDS {
                         hold = self.cloth.mesh.uids().to_vec();
                     }
@@ -283,14 +282,20 @@ impl World {
             seconds.remesh = times[1];
             remesh = Some(report);
         } else if self.contact.is_some() {
-            n_crossings = self.crossings(frame).map_or(0, |crossings| crossings.n);
+            crossings = self.crossings(frame);
         }
         self.frame = frame;
+        let yielded = self.tangled.yielding.len();
+        self.note_crossings(crossings.as_ref());
         seconds.solve(&solve);
         seconds.total = clock.elapsed().as_secs_f64();
         let (substeps, remesh) = (self.substeps, remesh.as_ref());
-        let crossings = self.contact.map(|_| n_crossings);
-        Ok(FrameReport::new(self, substeps, retries, &solve, remesh, crossings, stretch, seconds))
+        let crossings = self.contact.map(|_| crossings.map_or(0, |crossings| crossings.n));
+        let mut report =
+            FrameReport::new(self, substeps, retries, &solve, remesh, crossings, stretch, seconds);
+        report.yielded = yielded;
+        report.warnings = std::mem::take(&mut self.tangled.warnings);
+        Ok(report)
     }
 
     /// One step; a failing one is redone in halves.
@@ -322,10 +327,21 @@ impl World {
                 solve.add(&report);
                 Ok(())
             }
-            Err(source) if depth == MAX_HALVINGS => {
-                Err(StepError::Solve { frame, time: step.time, h: step.h, source })
-            }
-            Err(_) => {
+            Err(source) => {
+                if self.tangled.matters() {
+                    // The contact may have found it free in the meantime.
+                    self.prepared = None;
+                }
+                if let SolveError::Caught { place, .. } = source
+                    && depth >= YIELD_DEPTH
+                    && self.yield_at(place)
+                {
+                    *retries += 1;
+                    return self.step(step, frame, depth, solve, retries, seconds);
+                }
+                if depth == MAX_HALVINGS {
+                    return Err(StepError::Solve { frame, time: step.time, h: step.h, source });
+                }
                 *retries += 1;
                 let h = 0.5 * step.h;
                 for time in [step.time, step.time + h] {
@@ -346,7 +362,9 @@ impl World {
             let (times, time) = ([step.time, end], step.time);
             let found = appearing_in_cloth(&self.obstacles, &self.cloth, settings, times);
             if let Some((obstacle, crossings)) = found {
-                return Err(StepError::InTheWay { frame, obstacle, time, crossings });
+                let what = format!("obstacle `{obstacle}` appears at {time} s where cloth is");
+                self.tangled.warnings.push(World::tangle_warning(&what, &crossings));
+                self.tangled.is_so = true;
             }
         }
         Ok(())
@@ -371,6 +389,11 @@ impl World {
                             let of = |garment: &&Garment| garment.panels.contains(&panel);
                             self.garments.iter().find(of).and_then(|garment| garment.thickness)
                         });
+                let contact = if self.tangled.matters() {
+                    contact.tangled(&self.tangled.yielding)
+                } else {
+                    contact
+                };
                 system.set_contact(Box::new(contact));
             }
             self.prepared = Some(Prepared { system, names: by_name(&self.cloth.mesh) });

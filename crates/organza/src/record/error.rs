@@ -94,7 +94,7 @@ pub fn place(loaded: &Loaded, error: &BuildError) -> SceneErrors {
         BuildError::Obstacle { obstacle, message } => {
             (format!("obstacles[{obstacle}].mesh"), message.clone())
         }
-        BuildError::Tangled(_) | BuildError::TooLarge(_) => ("cloths".into(), error.to_string()),
+        BuildError::TooLarge(_) => ("cloths".into(), error.to_string()),
     };
     loaded.places.issue(IssueKind::Value, &path, message).into()
 }

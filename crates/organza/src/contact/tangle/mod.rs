@@ -14,7 +14,7 @@ pub(super) use drive::Drive;
 
 use super::pair::Sides;
 use collision::contour::{Contours, Push};
-use collision::{Bvh, Surface, SurfaceError};
+use collision::{Aabb, Bvh, Surface, SurfaceError};
 use exit::Exit;
 use mesh_core::{ClothState, World3};
 use region::{Regions, Traces};
@@ -23,6 +23,10 @@ use region::{Regions, Traces};
 const SPEED: f64 = 1.0;
 /// Sets of vertices are told apart as bits of a number: beyond these, contours share them.
 const N_BITS: usize = 64;
+/// Share of the size of everything by which places are changed to keep them from just touching.
+const OFF: f64 = 1e-9;
+/// The golden ratio: its multiples have the most even fractions.
+const GOLDEN: f64 = 1.618_033_988_749_895;
 
 /// The cloth and all obstacles as one surface, cloth first.
 pub(super) struct Joined {
@@ -44,6 +48,7 @@ impl Joined {
     /// Contours of cloth with cloth, if it touches itself, and with obstacles; `x` are positions of
     /// all (m).
     pub(super) fn contours(&self, x: &[World3], self_contact: bool) -> Contours {
+        let x = &generic(x);
         let of_cloth = |edge: u32| (self.surface.edges()[edge as usize][0] as usize) < self.n_cloth;
         let keep = |edge: u32, t: u32| {
             match (of_cloth(edge), (t as usize) < self.n_cloth_triangles) {
@@ -55,6 +60,17 @@ impl Joined {
         let tree: Bvh = self.surface.tree(x);
         Contours::find(&self.surface, x, &tree, keep)
     }
+}
+
+/// Positions a little off their places, so that nothing just touches: a contour along which vertices of
+/// one surface lie in the other is as good as its neighbours.
+fn generic(x: &[World3]) -> Vec<World3> {
+    let extent = Aabb::around(x).extent();
+    let off = |i: usize| {
+        let noise = |k: usize| ((3 * i + k) as f64 * GOLDEN).fract() - 0.5;
+        World3::new(noise(0), noise(1), noise(2)) * (OFF * extent)
+    };
+    x.iter().enumerate().map(|(i, x)| x + off(i)).collect()
 }
 
 /// Total length of all contours along which a cloth passes through itself, if it can touch itself, and
@@ -122,7 +138,7 @@ impl Tangle {
         if contours.is_empty() {
             return !self.yielding.is_empty();
         }
-        let pushes = contours.pushes(surface, &x);
+        let pushes = contours.pushes(surface, &generic(&x));
         let mut regions = Regions::new(surface, &contours.crossings);
         let way = SPEED * start.duration;
         let mut is_driven = vec![false; contours.crossings.len()];
