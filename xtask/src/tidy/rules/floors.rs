@@ -16,6 +16,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("io-mcap", 1),
     ("collision", 1),
     ("sph", 1),
+    ("sph", 1),
     ("sizing-view", 2),
     ("arps", 2),
     ("organza", 3),

@@ -1,0 +1,25 @@
+//! Weakly compressible SPH fluid.
+#![forbid(unsafe_code)]
+
+mod fluid;
+mod grid;
+mod kernel;
+mod neighbours;
+mod pair;
+mod report;
+mod settings;
+mod source;
+mod state;
+mod state_equation;
+mod sweep;
+mod view;
+mod walls;
+
+pub use fluid::Fluid;
+pub use kernel::CubicSpline;
+pub use report::StepReport;
+pub use settings::{Bounds, FluidError, FluidSettings};
+pub use source::{Emitter, Sink};
+pub use state_equation::Tait;
+pub use view::{Energy, Particle};
+pub use walls::{Open, Walls};
