@@ -1,5 +1,6 @@
 //! The cubic spline kernel (Monaghan1992), without branches so that several distances are done at once.
 
+use crate::lanes::Number;
 use std::f64::consts::PI;
 
 /// The cubic spline in three dimensions. Its support is twice the smoothing length h.
@@ -32,45 +33,29 @@ impl CubicSpline {
     }
 
     /// W(r) for r² = `r_squared` (m²), in 1/m³.
-    #[inline(always)]
+    #[inline]
     pub fn value(&self, r_squared: f64) -> f64 {
-        self.value_of_q(r_squared.sqrt() * self.inverse_h)
+        self.value_and_slope(r_squared).0
     }
 
     /// F(r) = W′(r) / r for r² = `r_squared` (m²), in 1/m⁵: the gradient of W is F times the offset.
-    #[inline(always)]
+    #[inline]
     pub fn slope_over_r(&self, r_squared: f64) -> f64 {
         self.value_and_slope(r_squared).1
     }
 
     /// W(r) in 1/m³ and F(r) = W′(r) / r in 1/m⁵, for r² = `r_squared` (m²).
     #[inline(always)]
-    pub fn value_and_slope(&self, r_squared: f64) -> (f64, f64) {
-        let q = r_squared.sqrt() * self.inverse_h;
-        let (outer, inner) = (positive(2.0 - q), positive(1.0 - q));
+    pub(crate) fn value_and_slope<N: Number>(&self, r_squared: N) -> (N, N) {
         // Below `TINY` the difference loses its digits, but so small an offset makes no force.
         const TINY: f64 = 1e-100;
-        let slope = (outer * outer - 4.0 * (inner * inner)) / larger(q, TINY);
-        (self.value_of_q(q), self.slope_scale * slope)
+        let q = r_squared.root() * self.inverse_h;
+        let (outer, inner) = (q.from_which(2.0).at_least(0.0), q.from_which(1.0).at_least(0.0));
+        let (outer_squared, inner_squared) = (outer * outer, inner * inner * 4.0);
+        let value = outer_squared * outer - inner_squared * inner;
+        let slope = (outer_squared - inner_squared) / q.at_least(TINY);
+        (value * self.value_scale, slope * self.slope_scale)
     }
-
-    #[inline(always)]
-    fn value_of_q(&self, q: f64) -> f64 {
-        let (outer, inner) = (positive(2.0 - q), positive(1.0 - q));
-        self.value_scale * (outer * outer * outer - 4.0 * (inner * inner * inner))
-    }
-}
-
-/// max(x, 0) as one instruction: `f64::max` takes care of NaN, which costs three.
-#[inline(always)]
-pub(crate) fn positive(x: f64) -> f64 {
-    larger(x, 0.0)
-}
-
-/// The larger of two numbers, neither of which is NaN.
-#[inline(always)]
-pub(crate) fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
 }
 
 #[cfg(test)]

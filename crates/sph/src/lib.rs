@@ -4,6 +4,7 @@
 mod fluid;
 mod grid;
 mod kernel;
+mod lanes;
 mod neighbours;
 mod pair;
 mod report;

@@ -4,13 +4,12 @@
 //! so that neighbours in space are neighbours in memory.
 
 use crate::grid::{Grid, Point};
+use crate::lanes::LANES;
 use crate::walls::Walls;
 use mesh_core::par;
 
 /// Particles per block: one task of a thread.
 pub(crate) const BLOCK: usize = 64;
-/// Neighbours that are done at once. Lists of active neighbours are padded to a multiple of it.
-pub(crate) const LANES: usize = 4;
 
 /// Neighbours of one kind (fluid or wall) of the particles of a block.
 #[derive(Clone, Debug, Default)]

@@ -2,9 +2,11 @@
 
 use crate::grid::Point;
 use crate::kernel::CubicSpline;
+use crate::lanes::{Four, LANES, Number};
 use crate::settings::FluidSettings;
 use crate::state_equation::Tait;
 use crate::walls;
+use pulp::Simd;
 
 /// The constants of a fluid's forces.
 #[derive(Clone, Copy, Debug)]
@@ -23,26 +25,50 @@ pub(crate) struct Laws {
     softening: f64,
 }
 
-/// One of two particles: position, effective velocity, P = p/ρ² and ρ.
+/// One of two particles, or of four pairs at once: position, effective velocity, P = p/ρ² and ρ.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Side {
-    pub(crate) x: [f64; 3],
-    pub(crate) w: [f64; 3],
-    pub(crate) pressure_term: f64,
-    pub(crate) density: f64,
+pub(crate) struct Side<N> {
+    pub(crate) x: [N; 3],
+    pub(crate) w: [N; 3],
+    pub(crate) pressure_term: N,
+    pub(crate) density: N,
 }
 
-impl Side {
+impl Side<f64> {
     /// From a position that carries P and an effective velocity that carries ρ.
     #[inline(always)]
     pub(crate) fn new(x: &Point, w: &Point) -> Self {
+        Side { x: [x[0], x[1], x[2]], w: [w[0], w[1], w[2]], pressure_term: x[3], density: w[3] }
+    }
+}
+
+impl<S: Simd> Side<Four<S>> {
+    /// Four times the same particle.
+    #[inline(always)]
+    pub(crate) fn splat(simd: S, x: &Point, w: &Point) -> Self {
+        let splat = |number: f64| Four::splat(simd, number);
         Side {
-            x: [x[0], x[1], x[2]],
-            w: [w[0], w[1], w[2]],
-            pressure_term: x[3],
-            density: w[3],
+            x: [splat(x[0]), splat(x[1]), splat(x[2])],
+            w: [splat(w[0]), splat(w[1]), splat(w[2])],
+            pressure_term: splat(x[3]),
+            density: splat(w[3]),
         }
     }
+
+    /// Four particles.
+    #[inline(always)]
+    pub(crate) fn gather(simd: S, x: [&Point; LANES], w: [&Point; LANES]) -> Self {
+        let [x0, x1, x2, x3] = transpose(simd, x);
+        let [w0, w1, w2, w3] = transpose(simd, w);
+        Side { x: [x0, x1, x2], w: [w0, w1, w2], pressure_term: x3, density: w3 }
+    }
+}
+
+/// The first numbers of four points, the second ones, and so on.
+#[inline(always)]
+pub(crate) fn transpose<S: Simd>(simd: S, p: [&Point; LANES]) -> [Four<S>; 4] {
+    let row = |k: usize| Four::new(simd, [p[0][k], p[1][k], p[2][k], p[3][k]]);
+    [row(0), row(1), row(2), row(3)]
 }
 
 impl Laws {
@@ -71,29 +97,34 @@ impl Laws {
     /// The acceleration of `here` by `there` (m/s²), Manteaux2013 Eq. (5), (6) with the pressure of
     /// Becker2007 Eq. (6), where F = `slope` (1/m⁵). Swapping the two gives exactly the opposite.
     #[inline(always)]
-    pub(crate) fn between(&self, here: &Side, there: &Side, slope: f64) -> [f64; 3] {
-        let d = [here.x[0] - there.x[0], here.x[1] - there.x[1], here.x[2] - there.x[2]];
-        let v = [here.w[0] - there.w[0], here.w[1] - there.w[1], here.w[2] - there.w[2]];
-        let r_squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        let closing = v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
-        let closing = if closing < 0.0 { closing } else { 0.0 };
-        let drag = closing / ((r_squared + self.softening) * (here.density + there.density));
-        let pressure = here.pressure_term + there.pressure_term;
-        let s = (self.viscous * drag - pressure) * (self.mass * slope);
+    pub(crate) fn between<N: Number>(&self, here: &Side<N>, there: &Side<N>, slope: N) -> [N; 3] {
+        let d = difference(&here.x, &there.x);
+        let v = difference(&here.w, &there.w);
+        let drag = self.drag(&d, &v, here.density + there.density) * self.viscous;
+        let s = (drag - (here.pressure_term + there.pressure_term)) * (slope * self.mass);
         [s * d[0], s * d[1], s * d[2]]
     }
 
-    /// The acceleration of `here` by a wall particle (m/s²): it has the pressure of the particle that
-    /// it touches (Akinci2012 Eq. (9)) and the rest density.
+    /// The acceleration of `here` by wall particles (m/s²) at `x` with the masses `mass` (kg): they have
+    /// the pressure of the particle that they touch (Akinci2012 Eq. (9)) and the rest density.
     #[inline(always)]
-    pub(crate) fn by_wall(&self, here: &Side, wall: &Point, slope: f64) -> [f64; 3] {
-        let d = [here.x[0] - wall[0], here.x[1] - wall[1], here.x[2] - wall[2]];
-        let v = here.w;
-        let r_squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-        let closing = v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
-        let closing = if closing < 0.0 { closing } else { 0.0 };
-        let drag = closing / ((r_squared + self.softening) * (here.density + self.rest_density));
-        let s = (self.wall_viscous * drag - here.pressure_term) * (wall[3] * slope);
+    pub(crate) fn by_wall<N: Number>(&self, here: &Side<N>, x: &[N; 3], mass: N, slope: N) -> [N; 3] {
+        let d = difference(&here.x, x);
+        let drag = self.drag(&d, &here.w, here.density + self.rest_density) * self.wall_viscous;
+        let s = (drag - here.pressure_term) * (slope * mass);
         [s * d[0], s * d[1], s * d[2]]
     }
+
+    /// v·d / ((d² + ε h²) (ρᵢ + ρⱼ)) where particles approach each other, else 0.
+    #[inline(always)]
+    fn drag<N: Number>(&self, d: &[N; 3], v: &[N; 3], densities: N) -> N {
+        let r_squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+        let approach = v[0] * d[0] + v[1] * d[1] + v[2] * d[2];
+        approach.at_most(0.0) / ((r_squared + self.softening) * densities)
+    }
+}
+
+#[inline(always)]
+fn difference<N: Number>(a: &[N; 3], b: &[N; 3]) -> [N; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }

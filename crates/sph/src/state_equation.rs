@@ -1,6 +1,6 @@
 //! The equation of Tait: pressure as a function of density (Becker2007 Eq. (7)).
 
-use crate::kernel::positive;
+use crate::lanes::Number;
 
 /// Tait's equation with exponent 7: p(ρ) = (c² ρ₀ / 7) [(ρ/ρ₀)⁷ − 1], without tension.
 ///
@@ -24,7 +24,7 @@ impl Tait {
     pub fn pressure(&self, density: f64) -> f64 {
         let ratio = density * self.inverse_rest_density;
         let cube = ratio * ratio * ratio;
-        positive(self.stiffness * (cube * cube * ratio - 1.0))
+        (self.stiffness * (cube * cube * ratio - 1.0)).at_least(0.0)
     }
 
     /// Energy of compression per mass at a density (kg/m³), in J/kg: its derivative by the density

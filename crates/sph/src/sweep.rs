@@ -5,12 +5,12 @@
 
 use crate::grid::Point;
 use crate::kernel::CubicSpline;
-use crate::neighbours::{BLOCK, Block, LANES, Neighbours};
-use crate::pair::{Laws, Side};
+use crate::lanes::{self, Four, LANES};
+use crate::neighbours::{BLOCK, Block, Neighbours};
+use crate::pair::{Laws, Side, transpose};
 use crate::walls::Walls;
 use mesh_core::par;
-
-type Lanes = [f64; LANES];
+use pulp::{Simd, WithSimd};
 
 /// Densities (kg/m³) of all particles, into `density`; finds the neighbours within the support.
 pub(crate) fn densities(
@@ -20,69 +20,67 @@ pub(crate) fn densities(
     neighbours: &mut Neighbours,
     density: &mut [f64],
 ) {
-    let arch = pulp::Arch::new();
-    par::blocks(&mut neighbours.blocks, density, BLOCK, |b, block, part| {
-        arch.dispatch(
-            #[inline(always)]
-            || densities_of_block(laws, x, walls.points(), b * BLOCK, block, part),
-        );
+    par::blocks(&mut neighbours.blocks, density, BLOCK, |b, block, density| {
+        let (walls, first) = (walls.points(), b * BLOCK);
+        lanes::run(Densities { laws, x, walls, first, block, density });
     });
 }
 
-#[inline(always)]
-fn densities_of_block(
-    laws: &Laws,
-    x: &[Point],
-    walls: &[Point],
+/// The densities of a block. A type of its own and not a closure, since only this is compiled for the
+/// registers of the processor at hand.
+struct Densities<'a> {
+    laws: &'a Laws,
+    x: &'a [Point],
+    walls: &'a [Point],
     first: usize,
-    block: &mut Block,
-    density: &mut [f64],
-) {
+    block: &'a mut Block,
+    density: &'a mut [f64],
+}
+
+impl WithSimd for Densities<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        densities_of_block(simd, self);
+    }
+}
+
+#[inline(always)]
+fn densities_of_block<S: Simd>(simd: S, task: Densities<'_>) {
+    let Densities { laws, x, walls, first, block, density } = task;
     let kernel = &laws.kernel;
     let support_squared = kernel.support() * kernel.support();
     let at_zero = kernel.value(0.0);
     for (k, slot) in density.iter_mut().enumerate() {
-        let i = first + k;
-        let p = &x[i];
-        let (_, weights) = block.fluid.activate(k, p, x, support_squared, i as u32);
-        let fluid = weigh(kernel, weights);
+        let p = &x[first + k];
+        let (_, weights) = block.fluid.activate(k, p, x, support_squared, (first + k) as u32);
+        let mut fluid = Four::splat(simd, 0.0);
+        for four in weights.chunks_exact_mut(LANES) {
+            fluid = fluid + weigh(simd, kernel, four);
+        }
         let (active, weights) = block.wall.activate(k, p, walls, support_squared, 0);
-        let wall = if active.is_empty() { 0.0 } else { weigh_by_mass(kernel, walls, active, weights) };
-        *slot = laws.mass * (at_zero + fluid) + wall;
-    }
-}
-
-/// Σ W over squared distances, which become F.
-#[inline(always)]
-fn weigh(kernel: &CubicSpline, weights: &mut [f64]) -> f64 {
-    let mut sum: Lanes = [0.0; LANES];
-    for chunk in weights.chunks_exact_mut(LANES) {
-        for l in 0..LANES {
-            let (value, slope) = kernel.value_and_slope(chunk[l]);
-            sum[l] += value;
-            chunk[l] = slope;
+        let mut wall = Four::splat(simd, 0.0);
+        for (four, at) in weights.chunks_exact_mut(LANES).zip(active.chunks_exact(LANES)) {
+            let [_, _, _, mass] = transpose(simd, points(walls, at));
+            wall = wall + weigh(simd, kernel, four) * mass;
         }
+        *slot = laws.mass * (at_zero + fluid.total()) + wall.total();
     }
-    total(&sum)
 }
 
-/// The same with each W multiplied by the mass of its wall particle.
+/// W at four squared distances, which become F.
 #[inline(always)]
-fn weigh_by_mass(kernel: &CubicSpline, walls: &[Point], active: &[u32], weights: &mut [f64]) -> f64 {
-    let mut sum: Lanes = [0.0; LANES];
-    for (chunk, at) in weights.chunks_exact_mut(LANES).zip(active.chunks_exact(LANES)) {
-        for l in 0..LANES {
-            let (value, slope) = kernel.value_and_slope(chunk[l]);
-            sum[l] += value * walls[at[l] as usize][3];
-            chunk[l] = slope;
-        }
-    }
-    total(&sum)
+fn weigh<S: Simd>(simd: S, kernel: &CubicSpline, four: &mut [f64]) -> Four<S> {
+    let squared = Four::new(simd, [four[0], four[1], four[2], four[3]]);
+    let (value, slope) = kernel.value_and_slope(squared);
+    four.copy_from_slice(&slope.array());
+    value
 }
 
 #[inline(always)]
-fn total(sum: &Lanes) -> f64 {
-    (sum[0] + sum[1]) + (sum[2] + sum[3])
+fn points<'a>(list: &'a [Point], at: &[u32]) -> [&'a Point; LANES] {
+    [0, 1, 2, 3].map(|l| &list[at[l] as usize])
 }
 
 /// Accelerations by pressure and viscosity (m/s²), without gravity, into `a`.
@@ -96,61 +94,52 @@ pub(crate) fn accelerations(
     neighbours: &mut Neighbours,
     a: &mut [Point],
 ) {
-    let arch = pulp::Arch::new();
-    par::blocks(&mut neighbours.blocks, a, BLOCK, |b, block, part| {
-        arch.dispatch(
-            #[inline(always)]
-            || accelerations_of_block(laws, x, w, walls.points(), b * BLOCK, block, part),
-        );
+    par::blocks(&mut neighbours.blocks, a, BLOCK, |b, block, a| {
+        let (walls, first) = (walls.points(), b * BLOCK);
+        lanes::run(Accelerations { laws, x, w, walls, first, block, a });
     });
 }
 
-#[inline(always)]
-fn accelerations_of_block(
-    laws: &Laws,
-    x: &[Point],
-    w: &[Point],
-    walls: &[Point],
+/// The accelerations of a block.
+struct Accelerations<'a> {
+    laws: &'a Laws,
+    x: &'a [Point],
+    w: &'a [Point],
+    walls: &'a [Point],
     first: usize,
-    block: &Block,
-    a: &mut [Point],
-) {
+    block: &'a Block,
+    a: &'a mut [Point],
+}
+
+impl WithSimd for Accelerations<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        accelerations_of_block(simd, self);
+    }
+}
+
+#[inline(always)]
+fn accelerations_of_block<S: Simd>(simd: S, task: Accelerations<'_>) {
+    let Accelerations { laws, x, w, walls, first, block, a } = task;
     for (k, slot) in a.iter_mut().enumerate() {
-        let i = first + k;
-        let here = Side::new(&x[i], &w[i]);
-        let mut sum: [Lanes; 3] = [[0.0; LANES]; 3];
+        let here = Side::splat(simd, &x[first + k], &w[first + k]);
+        let mut sum = [Four::splat(simd, 0.0); 3];
         let (active, slopes) = block.fluid.active(k);
         for (at, f) in active.chunks_exact(LANES).zip(slopes.chunks_exact(LANES)) {
-            let mut xs: [Lanes; 4] = [[0.0; LANES]; 4];
-            let mut ws: [Lanes; 4] = [[0.0; LANES]; 4];
-            for l in 0..LANES {
-                let (x, w) = (&x[at[l] as usize], &w[at[l] as usize]);
-                for c in 0..4 {
-                    xs[c][l] = x[c];
-                    ws[c][l] = w[c];
-                }
-            }
-            for l in 0..LANES {
-                let there = Side {
-                    x: [xs[0][l], xs[1][l], xs[2][l]],
-                    w: [ws[0][l], ws[1][l], ws[2][l]],
-                    pressure_term: xs[3][l],
-                    density: ws[3][l],
-                };
-                let by = laws.between(&here, &there, f[l]);
-                for c in 0..3 {
-                    sum[c][l] += by[c];
-                }
-            }
+            let there = Side::gather(simd, points(x, at), points(w, at));
+            let slope = Four::new(simd, [f[0], f[1], f[2], f[3]]);
+            let by = laws.between(&here, &there, slope);
+            sum = [sum[0] + by[0], sum[1] + by[1], sum[2] + by[2]];
         }
-        let mut acceleration = [total(&sum[0]), total(&sum[1]), total(&sum[2]), 0.0];
         let (active, slopes) = block.wall.active(k);
-        for (&at, &f) in active.iter().zip(slopes) {
-            let by = laws.by_wall(&here, &walls[at as usize], f);
-            for c in 0..3 {
-                acceleration[c] += by[c];
-            }
+        for (at, f) in active.chunks_exact(LANES).zip(slopes.chunks_exact(LANES)) {
+            let [x0, x1, x2, mass] = transpose(simd, points(walls, at));
+            let slope = Four::new(simd, [f[0], f[1], f[2], f[3]]);
+            let by = laws.by_wall(&here, &[x0, x1, x2], mass, slope);
+            sum = [sum[0] + by[0], sum[1] + by[1], sum[2] + by[2]];
         }
-        *slot = acceleration;
+        *slot = [sum[0].total(), sum[1].total(), sum[2].total(), 0.0];
     }
 }
