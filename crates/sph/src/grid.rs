@@ -5,11 +5,43 @@ use std::ops::Range;
 /// Coordinates of a point; the fourth number is whatever travels with it.
 pub(crate) type Point = [f64; 4];
 
+/// The coordinates of points one axis at a time, for looking at many in a row.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Columns([Vec<f64>; 3]);
+
+impl Columns {
+    /// Takes the coordinates of these points.
+    pub(crate) fn fill(&mut self, points: &[Point]) {
+        for (k, column) in self.0.iter_mut().enumerate() {
+            column.clear();
+            column.extend(points.iter().map(|p| p[k]));
+        }
+    }
+
+    /// Squared distances (m²) of a range of points from `p`.
+    #[inline(always)]
+    pub(crate) fn squared_distances(&self, range: Range<usize>, p: &Point, squared: &mut Vec<f64>) {
+        let [x, y, z] = [0, 1, 2].map(|k| &self.0[k][range.clone()]);
+        squared.clear();
+        squared.extend(x.iter().zip(y).zip(z).map(|((x, y), z)| {
+            let d = [p[0] - x, p[1] - y, p[2] - z];
+            d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
+        }));
+    }
+}
+
+/// Cells are shorter along x than along y and z, so that a row is cut close to a sphere.
+const CELLS_PER_REACH: f64 = 4.0;
+
 /// Cells in rows along x: the points of neighbouring cells of a row follow each other in the order.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Grid {
     origin: [f64; 3],
-    inverse_cell: f64,
+    /// How far around a point others are looked for (m), a little more than asked for.
+    reach: f64,
+    /// Size of a cell along y and z (m), at least the reach.
+    cell: f64,
+    inverse_cell: [f64; 3],
     /// Number of cells along each axis.
     dims: [i64; 3],
     /// For every cell where its points start in the order; one more at the end.
@@ -19,14 +51,11 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
-    /// Lays cells of at least `cell` (m) over the points and writes the order that sorts them by cell,
-    /// stably, to `order`. Far-flung points get larger cells, to bound their number.
-    pub(crate) fn build(&mut self, x: &[Point], cell: f64, order: &mut Vec<u32>) {
-        order.clear();
-        let (mut low, mut high) = ([0.0; 3], [0.0; 3]);
-        if let Some(first) = x.first() {
-            (low, high) = ([first[0], first[1], first[2]], [first[0], first[1], first[2]]);
-        }
+    /// Lays cells over the points, for looking `reach` (m) around them, and writes the order that sorts
+    /// them by cell, stably, to `order`. Far-flung points get larger cells, to bound their number.
+    pub(crate) fn build(&mut self, x: &[Point], reach: f64, order: &mut Vec<u32>) {
+        let first = x.first().copied().unwrap_or_default();
+        let (mut low, mut high) = ([first[0], first[1], first[2]], [first[0], first[1], first[2]]);
         for p in x {
             for k in 0..3 {
                 low[k] = p[k].min(low[k]);
@@ -34,19 +63,22 @@ impl Grid {
             }
         }
         self.origin = low;
-        let most = 4096 + 64 * x.len();
-        let mut cell = cell;
+        // The rounding of coordinates in cells.
+        self.reach = reach * (1.0 + 1e-9);
+        self.cell = self.reach;
+        let most = (4096 + 64 * x.len()) as f64;
         let n_cells = loop {
-            let along = |k: usize| ((high[k] - low[k]) / cell).floor() + 1.0;
+            self.inverse_cell = [CELLS_PER_REACH, 1.0, 1.0].map(|n| n / self.cell);
+            let along = |k: usize| ((high[k] - low[k]) * self.inverse_cell[k]).floor() + 1.0;
             let n = along(0) * along(1) * along(2);
-            if n <= most as f64 {
+            if n <= most {
                 self.dims = [along(0) as i64, along(1) as i64, along(2) as i64];
                 break n as usize;
             }
-            cell *= 2.0;
+            self.cell *= 2.0;
         };
-        self.inverse_cell = 1.0 / cell;
         self.count(x, n_cells);
+        order.clear();
         order.resize(x.len(), 0);
         // `start[c]` runs to the end of cell c while its points are placed, and is set back after.
         for (i, &c) in self.cells.iter().enumerate() {
@@ -83,27 +115,40 @@ impl Grid {
 
     #[inline(always)]
     fn coordinates(&self, p: &Point) -> [i64; 3] {
-        [0, 1, 2].map(|k| ((p[k] - self.origin[k]) * self.inverse_cell).floor() as i64)
+        [0, 1, 2].map(|k| ((p[k] - self.origin[k]) * self.inverse_cell[k]).floor() as i64)
     }
 
-    /// Where in the order the points lie that may be within a cell's length of `p`: up to nine ranges.
+    /// Where in the order the points lie that may be within the reach of `p`: nine ranges, of which any
+    /// may be empty.
     #[inline(always)]
-    pub(crate) fn for_each_row(&self, p: &Point, mut f: impl FnMut(Range<usize>)) {
+    pub(crate) fn rows(&self, p: &Point) -> [Range<usize>; 9] {
         let at = self.coordinates(p);
-        let reach = |k: usize| ((at[k] - 1).max(0), (at[k] + 1).min(self.dims[k] - 1));
-        let ((x0, x1), (y0, y1), (z0, z1)) = (reach(0), reach(1), reach(2));
-        if x0 > x1 {
-            return;
-        }
-        for z in z0..=z1 {
-            for y in y0..=y1 {
-                let row = (z * self.dims[1] + y) * self.dims[0];
-                let (from, to) = (self.start[(row + x0) as usize], self.start[(row + x1 + 1) as usize]);
-                if from < to {
-                    f(from as usize..to as usize);
-                }
+        // For the rows before, at and behind `p`: the square of its distance from them.
+        let squares = |k: usize| {
+            let before = p[k] - (self.origin[k] + at[k] as f64 * self.cell);
+            [before * before, 0.0, (self.cell - before) * (self.cell - before)]
+        };
+        let (y_squares, z_squares) = (squares(1), squares(2));
+        let x = p[0] - self.origin[0];
+        let mut rows = [const { 0..0 }; 9];
+        for (n, row) in rows.iter_mut().enumerate() {
+            let (j, k) = (n % 3, n / 3);
+            let (y, z) = (at[1] + j as i64 - 1, at[2] + k as i64 - 1);
+            let exists = (0..self.dims[1]).contains(&y) && (0..self.dims[2]).contains(&z);
+            let left = self.reach * self.reach - y_squares[j] - z_squares[k];
+            if !exists || left < 0.0 {
+                continue;
+            }
+            let half = left.sqrt();
+            let x0 = (((x - half) * self.inverse_cell[0]).floor() as i64).max(0);
+            let x1 = (((x + half) * self.inverse_cell[0]).floor() as i64).min(self.dims[0] - 1);
+            if x0 <= x1 {
+                let first = (z * self.dims[1] + y) * self.dims[0];
+                let [from, to] = [first + x0, first + x1 + 1].map(|c| self.start[c as usize] as usize);
+                *row = from..to;
             }
         }
+        rows
     }
 }
 
@@ -126,13 +171,11 @@ mod tests {
             let (mut grid, mut order) = (Grid::default(), Vec::new());
             grid.build(&points, cell, &mut order);
             let mut found = vec![false; points.len()];
-            grid.for_each_row(&probe, |range| {
-                for at in range {
-                    let i = order[at] as usize;
-                    assert!(!found[i], "point {i} is found twice");
-                    found[i] = true;
-                }
-            });
+            for at in grid.rows(&probe).into_iter().flatten() {
+                let i = order[at] as usize;
+                prop_assert!(!found[i], "point {} is found twice", i);
+                found[i] = true;
+            }
             for (i, p) in points.iter().enumerate() {
                 prop_assert!(found[i] || squared(p, &probe) > cell * cell);
             }
@@ -146,7 +189,7 @@ mod tests {
     fn no_points_and_far_points() {
         let (mut grid, mut order) = (Grid::default(), Vec::new());
         grid.build(&[], 0.1, &mut order);
-        grid.for_each_row(&[0.0; 4], |_| panic!("there is nothing"));
+        assert!(grid.rows(&[0.0; 4]).iter().all(Range::is_empty));
         let far = [[0.0; 4], [1e6, 1e6, 1e6, 0.0]];
         grid.build(&far, 0.1, &mut order);
         assert!(grid.start.len() < 10_000);

@@ -3,10 +3,11 @@
 //! The lists stay good until a particle has moved by half the skin. Particles are sorted by cell first,
 //! so that neighbours in space are neighbours in memory.
 
-use crate::grid::{Grid, Point};
-use crate::lanes::LANES;
+use crate::grid::{Columns, Grid, Point};
+use crate::lanes::{self, LANES};
 use crate::walls::Walls;
 use mesh_core::par;
+use pulp::{Simd, WithSimd};
 
 /// Particles per block: one task of a thread.
 pub(crate) const BLOCK: usize = 64;
@@ -20,6 +21,8 @@ pub(crate) struct Lists {
     /// The same for the candidates that are within the support now, padded.
     active_start: Vec<u32>,
     active: Vec<u32>,
+    /// Squared distances in a row of cells.
+    squared: Vec<f64>,
     /// For each active candidate F(r) = W′(r)/r; 0 in the padding.
     slope: Vec<f64>,
 }
@@ -45,23 +48,23 @@ impl Lists {
     }
 
     /// Adds a particle whose candidates are among the points of the rows around `p`.
-    fn push(&mut self, grid: &Grid, points: &[Point], p: &Point, reach: f64, but: usize) {
+    #[inline(always)]
+    fn push(&mut self, grid: &Grid, columns: &Columns, p: &Point, reach: f64, but: usize) {
         let mut n = *self.start.last().expect("cleared before") as usize;
         let reach_squared = reach * reach;
-        grid.for_each_row(p, |range| {
+        for range in grid.rows(p).into_iter().filter(|range| !range.is_empty()) {
+            columns.squared_distances(range.clone(), p, &mut self.squared);
             if self.candidates.len() < n + range.len() {
                 self.candidates.resize((n + range.len()) * 2, 0);
             }
             let room = &mut self.candidates[n..n + range.len()];
             let mut found = 0;
-            for (j, q) in range.clone().zip(&points[range]) {
-                let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-                let r_squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+            for (j, &squared) in range.zip(&self.squared) {
                 room[found] = j as u32;
-                found += usize::from((r_squared < reach_squared) & (j != but));
+                found += usize::from((squared < reach_squared) & (j != but));
             }
             n += found;
-        });
+        }
         self.start.push(n as u32);
     }
 
@@ -121,10 +124,39 @@ pub(crate) struct Block {
     pub(crate) wall: Lists,
 }
 
+/// Lists the neighbours of a block.
+struct Listing<'a> {
+    grid: &'a Grid,
+    columns: &'a Columns,
+    walls: &'a Walls,
+    first: usize,
+    x: &'a [Point],
+    reach: f64,
+    block: &'a mut Block,
+}
+
+impl WithSimd for Listing<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Block { fluid, wall } = self.block;
+        fluid.clear();
+        wall.clear();
+        for (i, p) in (self.first..).zip(self.x) {
+            fluid.push(self.grid, self.columns, p, self.reach, i);
+            wall.push(self.walls.grid(), self.walls.columns(), p, self.reach, usize::MAX);
+        }
+        fluid.finish();
+        wall.finish();
+    }
+}
+
 /// The neighbours of all particles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Neighbours {
     grid: Grid,
+    columns: Columns,
     pub(crate) blocks: Vec<Block>,
 }
 
@@ -134,21 +166,15 @@ impl Neighbours {
         self.grid.build(x, reach, order);
     }
 
-    /// Lists the neighbours of particles that are sorted. `units` is an array of that many items
-    /// without size, as `par::blocks` wants an output.
+    /// Lists the neighbours of particles that are sorted.
     pub(crate) fn list(&mut self, x: &[Point], walls: &Walls, reach: f64) {
         self.blocks.resize_with(x.len().div_ceil(BLOCK), Block::default);
-        let grid = &self.grid;
+        self.columns.fill(x);
+        let (grid, columns) = (&self.grid, &self.columns);
         let mut no_output = vec![(); x.len()];
         par::blocks(&mut self.blocks, &mut no_output, BLOCK, |b, block, part| {
-            block.fluid.clear();
-            block.wall.clear();
-            for (i, p) in (b * BLOCK..).zip(&x[b * BLOCK..b * BLOCK + part.len()]) {
-                block.fluid.push(grid, x, p, reach, i);
-                block.wall.push(walls.grid(), walls.points(), p, reach, usize::MAX);
-            }
-            block.fluid.finish();
-            block.wall.finish();
+            let (first, x) = (b * BLOCK, &x[b * BLOCK..b * BLOCK + part.len()]);
+            lanes::run(Listing { grid, columns, walls, first, x, reach, block });
         });
     }
 

@@ -3,7 +3,7 @@
 //! One layer leaks. Two fill the support of a particle that touches the wall, so that fluid at rest
 //! goes on into the wall as if it were fluid, and what presses in is still pushed out.
 
-use crate::grid::{Grid, Point};
+use crate::grid::{Columns, Grid, Point};
 use crate::kernel::CubicSpline;
 use crate::settings::{Bounds, FluidError};
 use nalgebra::Vector3;
@@ -32,6 +32,7 @@ pub struct Walls {
     /// Position (m) and mass ψ (kg), sorted by the cells of the grid once prepared.
     points: Vec<Point>,
     grid: Grid,
+    columns: Columns,
 }
 
 impl Walls {
@@ -130,17 +131,16 @@ impl Walls {
         let mut order = Vec::new();
         self.grid.build(&self.points, reach, &mut order);
         self.points = order.iter().map(|&i| self.points[i as usize]).collect();
+        self.columns.fill(&self.points);
         let masses: Vec<f64> = self
             .points
             .iter()
             .map(|p| {
                 let mut sum = 0.0;
-                self.grid.for_each_row(p, |range| {
-                    for q in &self.points[range] {
-                        let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-                        sum += kernel.value(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-                    }
-                });
+                for q in self.grid.rows(p).into_iter().flat_map(|range| &self.points[range]) {
+                    let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+                    sum += kernel.value(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+                }
                 rest_density * factor / sum
             })
             .collect();
@@ -152,6 +152,11 @@ impl Walls {
     /// The cells of the particles.
     pub(crate) fn grid(&self) -> &Grid {
         &self.grid
+    }
+
+    /// Coordinates of the particles.
+    pub(crate) fn columns(&self) -> &Columns {
+        &self.columns
     }
 
     /// Positions and masses.
