@@ -11,6 +11,7 @@ pub(crate) const RULE: Rule =
 /// The floor of every crate of the workspace.
 const FLOORS: &[(&str, u32)] = &[
     ("mesh-core", 0),
+    ("arps", 0),
     ("remesh", 1),
     ("cloth-dynamics", 1),
     ("io-mcap", 1),
@@ -18,7 +19,6 @@ const FLOORS: &[(&str, u32)] = &[
     ("sph", 1),
     ("sph", 1),
     ("sizing-view", 2),
-    ("arps", 2),
     ("organza", 3),
     // Around the building: they may use everything and nothing uses them.
     ("xtask", 4),

@@ -1,0 +1,265 @@
+//! Implicit restrained steps: backward Euler of the adaptive equations of motion as a convex problem.
+
+use crate::blocks::{Blocks, SparseBlocks};
+use crate::convex::{ConvexProblem, ConvexSolver, momentum_error};
+use crate::error::StepError;
+use crate::explicit::{bleeding_kick, check_time};
+use crate::held::{Held, Motion};
+use crate::linear::MoverSystem;
+use crate::restraint::Restraint;
+use crate::{Conjugate, Law, Moved, Particles, Vector3};
+
+/// Implicit steps with a policy of restraint, for forces that come from a potential energy V.
+///
+/// A step minimises Σ h T*((x′ − x)/h) − p·(x′ − x) + h V(x′) over the new positions x′; the new
+/// momenta are p + h f(x′). For a convex V the restrained energy T + V never rises, whatever the
+/// stiffness and the step, and the linear systems hold the moving particles only.
+#[derive(Clone, Debug)]
+pub struct Implicit<R> {
+    restraint: R,
+    stiffness: SparseBlocks,
+    bleeding: Option<f64>,
+    tolerance: f64,
+    solver: ConvexSolver,
+    conjugates: Vec<Conjugate>,
+    now: Trial,
+    next: Trial,
+    drive: Vec<Vector3>,
+}
+
+/// Displacements, with positions, forces and potential energy there.
+#[derive(Clone, Debug, Default)]
+struct Trial {
+    d: Vec<Vector3>,
+    x: Vec<Vector3>,
+    f: Vec<Vector3>,
+    potential: f64,
+}
+
+/// What an implicit step did.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ImplicitReport {
+    /// Who rests at its end, and what bled away.
+    pub moved: Moved,
+    /// Linearisations of the forces.
+    pub n_newton: usize,
+    /// Linear systems solved.
+    pub n_solves: usize,
+    /// Particles in the linear systems, summed over these.
+    pub n_unknowns: usize,
+    /// Greatest error of momentum over the particles (kg m/s).
+    pub residual: f64,
+    /// False if the residual did not come under the tolerance, or under rounding.
+    pub converged: bool,
+}
+
+const MAX_NEWTON: usize = 40;
+const MAX_HALVINGS: usize = 30;
+
+impl<R: Restraint> Implicit<R> {
+    /// Steps under a policy, for particles whose interactions have the pattern of `stiffness`.
+    pub fn new(restraint: R, stiffness: SparseBlocks) -> Implicit<R> {
+        Implicit {
+            restraint,
+            stiffness,
+            bleeding: None,
+            tolerance: 1e-10,
+            solver: ConvexSolver::default(),
+            conjugates: Vec::new(),
+            now: Trial::default(),
+            next: Trial::default(),
+            drive: Vec::new(),
+        }
+    }
+
+    /// The policy.
+    pub fn restraint(&self) -> &R {
+        &self.restraint
+    }
+
+    /// Lets the momentum of resting particles decay with a time constant τ (s), as in
+    /// [`Explicit::with_bleeding`](crate::Explicit::with_bleeding): for those that rest at both ends
+    /// of a step.
+    ///
+    /// # Errors
+    /// A τ that is not positive and finite.
+    pub fn with_bleeding(mut self, tau: f64) -> Result<Implicit<R>, StepError> {
+        check_time("the time constant of bleeding", tau)?;
+        self.bleeding = Some(tau);
+        Ok(self)
+    }
+
+    /// Stops when the error of every momentum is below this share (1) of the greatest drive
+    /// ‖p + h f‖; 1e-10 if not set. What rounding allows is enough in any case.
+    pub fn with_tolerance(mut self, tolerance: f64) -> Implicit<R> {
+        self.tolerance = tolerance;
+        self
+    }
+
+    /// Makes a step of h (s). `evaluate` is given positions (m), adds forces (N) to a slice of zeros
+    /// and their stiffness −∂f/∂x, projected to be positive semidefinite (N/m), to a matrix of zeros,
+    /// and returns the potential energy (J). `solve` is as in [`ConvexSolver::solve`].
+    ///
+    /// # Errors
+    /// A step that is not positive and finite; a policy with a law that is not convex, or with
+    /// [`Law::Exact`], whose conjugate has a second kink; a linear system that cannot be solved; a
+    /// result that is not finite. The particles are then as they were.
+    pub fn step(
+        &mut self,
+        particles: &mut Particles,
+        h: f64,
+        mut evaluate: impl FnMut(&[Vector3], &mut [Vector3], &mut SparseBlocks) -> f64,
+        mut solve: impl FnMut(&MoverSystem<'_, SparseBlocks>, &mut [Vector3]) -> Result<(), StepError>,
+    ) -> Result<ImplicitReport, StepError> {
+        check_time("the step", h)?;
+        self.hold(particles)?;
+        let n = particles.len();
+        let mut report = ImplicitReport::default();
+        self.now.d.clear();
+        self.now.d.resize(n, Vector3::zeros());
+        self.now.evaluate(&particles.x, &mut self.stiffness, &mut evaluate);
+        let mut objective = self.objective(&self.now, particles, h);
+        loop {
+            report.n_newton += 1;
+            let drive = |i: usize| {
+                particles.p[i] + h * (self.now.f[i] + self.stiffness.row_times(i, &self.now.d))
+            };
+            self.drive.clear();
+            self.drive.extend((0..n).map(drive));
+            let most = self.now.f.iter().zip(&particles.p).map(|(f, p)| (p + h * f).norm());
+            let tolerance = self.tolerance * most.fold(0.0, f64::max);
+            let problem = ConvexProblem {
+                h,
+                conjugates: &self.conjugates,
+                drive: &self.drive,
+                stiffness: &self.stiffness,
+                tolerance: 0.1 * tolerance,
+            };
+            self.next.d.clone_from(&self.now.d);
+            let convex = self.solver.solve(&problem, &mut self.next.d, &mut solve)?;
+            report.n_solves += convex.n_solves;
+            report.n_unknowns += convex.n_unknowns;
+            let falls = self.line_search(particles, h, &mut objective, &mut evaluate);
+            let (residual, converged) = self.residual(particles, h, tolerance);
+            (report.residual, report.converged) = (residual, converged);
+            if converged || !falls || report.n_newton == MAX_NEWTON {
+                break;
+            }
+        }
+        self.finish(particles, h, &mut report)?;
+        Ok(report)
+    }
+
+    fn hold(&mut self, particles: &Particles) -> Result<(), StepError> {
+        self.conjugates.clear();
+        for i in 0..particles.len() {
+            let held: Held = self.restraint.at(&particles.particle(i));
+            let conjugate = held.conjugate();
+            if held.law() == Law::Exact && !held.is_free() && held.p_r() < f64::INFINITY {
+                return Err(StepError::SecondKink { particle: i });
+            }
+            let conjugate =
+                conjugate.map_err(|cause| StepError::NotConvex { particle: i, cause })?;
+            self.conjugates.push(conjugate);
+        }
+        Ok(())
+    }
+
+    /// What a step minimises (J s).
+    fn objective(&self, trial: &Trial, particles: &Particles, h: f64) -> f64 {
+        let kinetic = |i: usize| {
+            h * self.conjugates[i].psi(trial.d[i].norm() / h) - particles.p[i].dot(&trial.d[i])
+        };
+        (0..trial.d.len()).map(kinetic).sum::<f64>() + h * trial.potential
+    }
+
+    /// Goes from `now` towards `next` until the objective does not rise, and makes that `now`. False
+    /// if it rises however short the way.
+    fn line_search(
+        &mut self,
+        particles: &Particles,
+        h: f64,
+        objective: &mut f64,
+        evaluate: &mut impl FnMut(&[Vector3], &mut [Vector3], &mut SparseBlocks) -> f64,
+    ) -> bool {
+        let before = *objective;
+        // Rounding of the objective.
+        let slack = 1e-13 * (before.abs() + h * self.now.potential.abs());
+        for _ in 0..MAX_HALVINGS {
+            self.next.evaluate(&particles.x, &mut self.stiffness, evaluate);
+            let after = self.objective(&self.next, particles, h);
+            if after <= before + slack {
+                std::mem::swap(&mut self.now, &mut self.next);
+                *objective = after;
+                return true;
+            }
+            for (next, now) in self.next.d.iter_mut().zip(&self.now.d) {
+                *next = 0.5 * (*next + now);
+            }
+        }
+        // Not a step: the stiffness belongs to `now` again, and the report says what is left.
+        self.now.evaluate(&particles.x, &mut self.stiffness, evaluate);
+        false
+    }
+
+    fn residual(&self, particles: &Particles, h: f64, tolerance: f64) -> (f64, bool) {
+        let (mut worst, mut converged) = (0.0f64, true);
+        for i in 0..particles.len() {
+            let p = particles.p[i] + h * self.now.f[i];
+            let error = momentum_error(&self.conjugates[i], &p, &self.now.d[i], h);
+            // Forces inherit the rounding of positions, times the stiffness.
+            let mut stiff = self.stiffness.diagonal(i).norm() * self.now.x[i].norm();
+            self.stiffness.visit_row(i, |j, block| stiff += block.norm() * self.now.x[j].norm());
+            let rounding = p.norm() + particles.p[i].norm() + h * stiff;
+            worst = worst.max(error);
+            converged &= error <= tolerance + 4.0 * f64::EPSILON * rounding;
+        }
+        (worst, converged)
+    }
+
+    fn finish(
+        &mut self,
+        particles: &mut Particles,
+        h: f64,
+        report: &mut ImplicitReport,
+    ) -> Result<(), StepError> {
+        for i in 0..particles.len() {
+            let (d, f, conjugate) = (&self.now.d[i], &self.now.f[i], &self.conjugates[i]);
+            let p = &mut self.drive[i];
+            let kicked = particles.p[i] + h * f;
+            // The slope of ψ for movers: p + h f has the error of the displacement times h² k/m.
+            *p = if *d == Vector3::zeros() { kicked } else { conjugate.momentum(&(d / h)) };
+            let motion = conjugate.held().motion(p);
+            if let (Some(tau), Motion::Rest) = (self.bleeding, motion)
+                && conjugate.stays(&particles.p[i])
+            {
+                *p = bleeding_kick(&particles.p[i], f, h, tau);
+                report.moved.bled += kicked - *p;
+            }
+            report.moved.count(motion);
+            if !self.now.x[i].iter().chain(p.iter()).all(|c| c.is_finite()) {
+                return Err(StepError::NotFinite { particle: i });
+            }
+        }
+        particles.x.clone_from(&self.now.x);
+        particles.p.clone_from(&self.drive);
+        particles.time += h;
+        Ok(())
+    }
+}
+
+impl Trial {
+    fn evaluate(
+        &mut self,
+        x_t0: &[Vector3],
+        stiffness: &mut SparseBlocks,
+        evaluate: &mut impl FnMut(&[Vector3], &mut [Vector3], &mut SparseBlocks) -> f64,
+    ) {
+        self.x.clear();
+        self.x.extend(x_t0.iter().zip(&self.d).map(|(x, d)| x + d));
+        self.f.clear();
+        self.f.resize(x_t0.len(), Vector3::zeros());
+        stiffness.clear();
+        self.potential = evaluate(&self.x, &mut self.f, stiffness);
+    }
+}
