@@ -38,6 +38,6 @@ fn main() {
             r.add(&fluid.step(fluid.step_bound()).unwrap());
         }
         let t = cpu() - t;
-        println!("t {:.3} s, {:.3} M particle-steps/s, {:.2} ms/step, pairs/particle {:.1}, listings per step {:.3}, E {:?}", fluid.time(), r.particles as f64 / t / 1e6, t / steps as f64 * 1e3, 2.0 * r.pairs as f64 / r.particles as f64, r.listings as f64 / r.steps as f64, fluid.energy());
+        println!("t {:.3} s, {:.3} M particle-steps/s, {:.2} ms/step, pairs/particle {:.1}, listings per step {:.3}, E {:?}", fluid.time(), r.particles as f64 / t / 1e6, t / steps as f64 * 1e3, 2.0 * r.density_pairs as f64 / r.particles as f64, r.listings as f64 / r.steps as f64, fluid.energy());
     }
 }

@@ -1,19 +1,23 @@
 //! A fluid and its time step.
 
 use crate::grid::Point;
+use crate::incremental::{Changes, Update};
+use crate::motion::{Moved, larger};
 use crate::neighbours::Neighbours;
 use crate::pair::Laws;
 use crate::report::StepReport;
+use crate::restraint::RestraintSettings;
 use crate::settings::{FluidError, FluidSettings};
 use crate::source::{Emitter, Sink};
 use crate::state::{Spare, State};
 use crate::sweep;
 use crate::walls::Walls;
+use arps::Restraint;
 use nalgebra::Vector3;
 
-/// Particles of one fluid between walls.
+/// Particles of one fluid between walls. `R` is the policy that restrains them; `()` restrains nothing.
 #[derive(Clone, Debug)]
-pub struct Fluid {
+pub struct Fluid<R = ()> {
     pub(crate) settings: FluidSettings,
     pub(crate) laws: Laws,
     pub(crate) walls: Walls,
@@ -21,22 +25,21 @@ pub struct Fluid {
     /// Positions when neighbours were last listed.
     pub(crate) listed: Vec<Point>,
     pub(crate) neighbours: Neighbours,
+    pub(crate) restraint: Option<(R, RestraintSettings)>,
     pub(crate) emitters: Vec<Emitter>,
     pub(crate) sinks: Vec<Sink>,
     pub(crate) time: f64,
     pub(crate) next_id: u64,
-    fastest: f64,
-    hardest: f64,
-    scratch: Scratch,
+    pub(crate) fastest: f64,
+    pub(crate) hardest: f64,
+    pub(crate) scratch: Scratch,
 }
 
 /// Memory that lives from step to step and holds nothing of use between two.
 #[derive(Clone, Debug, Default)]
-struct Scratch {
-    x: Vec<Point>,
-    u: Vec<Point>,
-    w: Vec<Point>,
-    density: Vec<f64>,
+pub(crate) struct Scratch {
+    moved: Moved,
+    changes: Changes,
     order: Vec<u32>,
     spare: Spare,
 }
@@ -78,6 +81,7 @@ impl Fluid {
             state,
             listed: Vec::new(),
             neighbours: Neighbours::default(),
+            restraint: None,
             emitters: Vec::new(),
             sinks: Vec::new(),
             time: 0.0,
@@ -87,7 +91,48 @@ impl Fluid {
         };
         fluid.list_neighbours();
         fluid.evaluate_all();
+        fluid.hardest = hardest(&fluid.state.a);
         Ok(fluid)
+    }
+}
+
+impl<R: Restraint> Fluid<R> {
+    /// The same fluid under a policy: from the next step on particles move with the effective velocity
+    /// that the policy gives them, and what stands still costs little.
+    ///
+    /// # Errors
+    /// If a setting has no sense.
+    pub fn restrained<Q: Restraint>(
+        self,
+        policy: Q,
+        settings: RestraintSettings,
+    ) -> Result<Fluid<Q>, FluidError> {
+        settings.check()?;
+        Ok(self.with_restraint(Some((policy, settings))))
+    }
+
+    /// The same fluid without any policy.
+    pub fn released(self) -> Fluid {
+        self.with_restraint(None)
+    }
+
+    fn with_restraint<Q>(self, restraint: Option<(Q, RestraintSettings)>) -> Fluid<Q> {
+        Fluid {
+            settings: self.settings,
+            laws: self.laws,
+            walls: self.walls,
+            state: self.state,
+            listed: self.listed,
+            neighbours: self.neighbours,
+            restraint,
+            emitters: self.emitters,
+            sinks: self.sinks,
+            time: self.time,
+            next_id: self.next_id,
+            fastest: self.fastest,
+            hardest: self.hardest,
+            scratch: self.scratch,
+        }
     }
 
     /// The longest step that is stable in the present state (s): a part of the time that sound and
@@ -116,18 +161,27 @@ impl Fluid {
         if dt > bound * (1.0 + 1e-12) {
             return Err(FluidError::StepTooLong { step: dt, bound });
         }
-        let moved_squared = self.kick_and_drift(dt)?;
+        self.kick_and_drift(dt)?;
         self.time += dt;
-        let mut report = StepReport { steps: 1, ..StepReport::default() };
+        let n = self.state.len();
+        let mut report = StepReport { steps: 1, particles: n as u64, ..StepReport::default() };
+        report.moved = if self.restraint.is_some() { self.scratch.moved.movers.len() } else { n } as u64;
         let changed = self.emit_and_drain(&mut report);
         let half_skin = 0.5 * self.settings.skin * self.settings.spacing;
-        if changed || moved_squared > half_skin * half_skin {
+        if changed || self.scratch.moved.farthest_squared > half_skin * half_skin {
             self.list_neighbours();
+            self.evaluate_all();
             report.listings = 1;
+            report.sweeps = 1;
+        } else if !self.evaluate_changes(&mut report) {
+            self.evaluate_all();
+            report.sweeps = 1;
         }
-        self.evaluate_all();
-        report.particles = self.state.len() as u64;
-        report.pairs = self.neighbours.n_pairs() as u64;
+        if report.sweeps == 1 {
+            let n_pairs = self.neighbours.n_pairs() as u64;
+            (report.density_pairs, report.force_pairs) = (n_pairs, n_pairs);
+        }
+        self.hardest = hardest(&self.state.a);
         Ok(report)
     }
 
@@ -151,43 +205,25 @@ impl Fluid {
         Ok(report)
     }
 
-    /// New velocities and positions. Returns the square of the farthest way of a particle from where
-    /// neighbours were listed (m²).
-    fn kick_and_drift(&mut self, dt: f64) -> Result<f64, FluidError> {
-        let (state, next) = (&self.state, &mut self.scratch);
-        next.x.clear();
-        next.u.clear();
-        let domain = &self.settings.domain;
-        let (low, high) = (domain.min, domain.max);
-        let (mut fastest, mut farthest) = (0.0f64, 0.0f64);
-        let mut inside = true;
-        for i in 0..state.len() {
-            let (x, u, a, from) = (&state.x[i], &state.u[i], &state.a[i], &self.listed[i]);
-            let u = [u[0] + dt * a[0], u[1] + dt * a[1], u[2] + dt * a[2], 0.0];
-            let x = [x[0] + dt * u[0], x[1] + dt * u[1], x[2] + dt * u[2], x[3]];
-            for k in 0..3 {
-                inside &= (low[k] <= x[k]) & (x[k] <= high[k]);
+    /// New velocities and positions.
+    fn kick_and_drift(&mut self, dt: f64) -> Result<(), FluidError> {
+        let (state, moved) = (&mut self.state, &mut self.scratch.moved);
+        let (listed, domain) = (&self.listed, &self.settings.domain);
+        match &self.restraint {
+            None => moved.free(state, listed, domain, dt),
+            Some(restraint) => {
+                let now = (self.laws.mass, self.time);
+                moved.restrained(restraint, now, state, listed, domain, dt);
             }
-            let d = [x[0] - from[0], x[1] - from[1], x[2] - from[2]];
-            let way = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-            let speed = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
-            farthest = if way > farthest { way } else { farthest };
-            fastest = if speed > fastest { speed } else { fastest };
-            next.x.push(x);
-            next.u.push(u);
         }
-        if !inside {
-            let is_out = |x: &Point| !domain.contains(&Vector3::new(x[0], x[1], x[2]));
-            let i = next.x.iter().position(is_out).expect("one is out");
-            let u = &next.u[i];
+        if let Some(i) = moved.outside {
+            let u = &moved.u[i];
             let speed = Vector3::new(u[0], u[1], u[2]).norm();
-            return Err(escaped(state.id[i], &next.x[i], speed));
+            return Err(escaped(state.id[i], &moved.x[i], speed));
         }
-        std::mem::swap(&mut self.state.x, &mut next.x);
-        std::mem::swap(&mut self.state.u, &mut next.u);
-        self.state.w.copy_from_slice(&self.state.u);
-        self.fastest = fastest.sqrt();
-        Ok(farthest)
+        moved.swap(state);
+        self.fastest = moved.fastest;
+        Ok(())
     }
 
     /// New and removed particles. Returns true if there are any.
@@ -219,29 +255,61 @@ impl Fluid {
         self.listed.clone_from(&self.state.x);
     }
 
+    /// Densities, pressures and accelerations by what the step has changed. Returns false if that is
+    /// so much that everything has to be computed anew.
+    fn evaluate_changes(&mut self, report: &mut StepReport) -> bool {
+        let Some((_, settings)) = &self.restraint else { return false };
+        let n = self.state.len();
+        let moved = &self.scratch.moved;
+        if moved.movers.len() as f64 > settings.sweep_above * n as f64 {
+            return false;
+        }
+        let update = Update {
+            laws: &self.laws,
+            walls: &self.walls,
+            neighbours: &self.neighbours,
+            old_x: &moved.x,
+            old_w: &moved.w,
+            state: &mut self.state,
+            movers: &moved.movers,
+            stopped: &moved.stopped,
+            tolerance: settings.pressure_tolerance,
+            changes: &mut self.scratch.changes,
+            most_changed: (MOST_CHANGED * n as f64) as usize,
+        };
+        let Some(looked) = update.run() else { return false };
+        report.changed += looked.changed;
+        report.density_pairs += looked.density_pairs;
+        report.force_pairs += looked.force_pairs;
+        true
+    }
+
     /// Densities, pressures and accelerations of all particles, from nothing but their positions and
     /// effective velocities.
     fn evaluate_all(&mut self) {
-        let State { x, w, a, .. } = &mut self.state;
-        let density = &mut self.scratch.density;
-        density.resize(x.len(), 0.0);
+        let State { x, w, a, density, .. } = &mut self.state;
         sweep::densities(&self.laws, x, &self.walls, &mut self.neighbours, density);
         for ((x, w), &density) in x.iter_mut().zip(w.iter_mut()).zip(density.iter()) {
             x[3] = self.laws.pressure_term(density);
             w[3] = density;
         }
-        let gravity = self.settings.gravity;
         sweep::accelerations(&self.laws, x, w, &self.walls, &mut self.neighbours, a);
-        let mut hardest = 0.0f64;
-        for a in a.iter_mut() {
+        let gravity = self.settings.gravity;
+        for a in a {
             for k in 0..3 {
                 a[k] += gravity[k];
             }
-            let squared = a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
-            hardest = if squared > hardest { squared } else { hardest };
         }
-        self.hardest = hardest.sqrt();
     }
+}
+
+/// The part of the particles above which changes cost more than everything anew (1).
+const MOST_CHANGED: f64 = 0.6;
+
+/// The greatest acceleration (m/s²).
+fn hardest(a: &[Point]) -> f64 {
+    let squared = |a: &Point| a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+    a.iter().fold(0.0, |most, a| larger(squared(a), most)).sqrt()
 }
 
 fn escaped(id: u64, x: &Point, speed: f64) -> FluidError {

@@ -3,11 +3,14 @@
 
 mod fluid;
 mod grid;
+mod incremental;
 mod kernel;
 mod lanes;
+mod motion;
 mod neighbours;
 mod pair;
 mod report;
+mod restraint;
 mod settings;
 mod source;
 mod state;
@@ -19,6 +22,7 @@ mod walls;
 pub use fluid::Fluid;
 pub use kernel::CubicSpline;
 pub use report::StepReport;
+pub use restraint::RestraintSettings;
 pub use settings::{Bounds, FluidError, FluidSettings};
 pub use source::{Emitter, Sink};
 pub use state_equation::Tait;

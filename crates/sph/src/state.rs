@@ -6,14 +6,16 @@ use nalgebra::Vector3;
 /// All that belongs to particles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct State {
-    /// Position (m) and P = p/ρ².
+    /// Position (m) and P = p/ρ² as the accelerations have it.
     pub(crate) x: Vec<Point>,
-    /// Effective velocity (m/s) and density ρ (kg/m³).
+    /// Effective velocity (m/s) and density ρ (kg/m³), as the accelerations have them.
     pub(crate) w: Vec<Point>,
     /// Momentum per mass (m/s); the fourth number is 0.
     pub(crate) u: Vec<Point>,
     /// Acceleration, with gravity (m/s²); the fourth number is 0.
     pub(crate) a: Vec<Point>,
+    /// Density (kg/m³). For restrained fluid it may be ahead of what the accelerations have.
+    pub(crate) density: Vec<f64>,
     /// Lasting number.
     pub(crate) id: Vec<u64>,
 }
@@ -29,6 +31,7 @@ impl State {
         self.w.push([v.x, v.y, v.z, 0.0]);
         self.u.push([v.x, v.y, v.z, 0.0]);
         self.a.push([0.0; 4]);
+        self.density.push(0.0);
         self.id.push(id);
     }
 
@@ -43,6 +46,7 @@ impl State {
         filter(&mut self.w, &kept);
         filter(&mut self.u, &kept);
         filter(&mut self.a, &kept);
+        filter(&mut self.density, &kept);
         filter(&mut self.id, &kept);
     }
 
@@ -52,6 +56,7 @@ impl State {
         gather(&mut self.w, order, &mut spare.points);
         gather(&mut self.u, order, &mut spare.points);
         gather(&mut self.a, order, &mut spare.points);
+        gather(&mut self.density, order, &mut spare.numbers);
         gather(&mut self.id, order, &mut spare.ids);
     }
 }
@@ -60,6 +65,7 @@ impl State {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Spare {
     points: Vec<Point>,
+    numbers: Vec<f64>,
     ids: Vec<u64>,
 }
 

@@ -41,7 +41,7 @@ impl Energy {
     }
 }
 
-impl Fluid {
+impl<R> Fluid<R> {
     /// Number of particles.
     pub fn len(&self) -> usize {
         self.state.len()
@@ -59,7 +59,7 @@ impl Fluid {
 
     fn particle(&self, i: usize) -> Particle {
         let vector = |p: &[f64; 4]| Vector3::new(p[0], p[1], p[2]);
-        let density = self.state.w[i][3];
+        let density = self.state.density[i];
         Particle {
             id: self.state.id[i],
             position: vector(&self.state.x[i]),
