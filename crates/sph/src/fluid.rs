@@ -261,7 +261,8 @@ impl<R: Restraint> Fluid<R> {
         let Some((_, settings)) = &self.restraint else { return false };
         let n = self.state.len();
         let moved = &self.scratch.moved;
-        if moved.movers.len() as f64 > settings.sweep_above * n as f64 {
+        // Nothing held is nothing gained: the bits are then those of a fluid without a policy.
+        if !moved.any_held || moved.movers.len() as f64 > settings.sweep_above * n as f64 {
             return false;
         }
         let update = Update {

@@ -20,6 +20,8 @@ pub(crate) struct Moved {
     pub(crate) fastest: f64,
     /// Square of the farthest way from where neighbours were listed (m²).
     pub(crate) farthest_squared: f64,
+    /// True if a particle may be restrained at all.
+    pub(crate) any_held: bool,
     /// A particle that has left the domain.
     pub(crate) outside: Option<usize>,
 }
@@ -32,7 +34,8 @@ impl Moved {
         self.u.clear();
         self.movers.clear();
         self.stopped.clear();
-        (self.fastest, self.farthest_squared, self.outside) = (0.0, 0.0, None);
+        (self.fastest, self.farthest_squared) = (0.0, 0.0);
+        (self.any_held, self.outside) = (false, None);
     }
 
     /// Moves all particles freely for a time `dt` (s).
@@ -72,8 +75,9 @@ impl Moved {
             let was_still = w[0] == 0.0 && w[1] == 0.0 && w[2] == 0.0;
             let position = Vector3::new(x[0], x[1], x[2]);
             let held = policy.at(&Particle { index: i, mass, x: position, time });
+            self.any_held |= !held.is_free();
             let u = match bleeding {
-                Some((tau, lost)) if was_still => {
+                Some((tau, lost)) if was_still && !held.is_free() => {
                     let bled = |k: usize| u[k] + (tau * a[k] - u[k]) * lost;
                     [bled(0), bled(1), bled(2), 0.0]
                 }
