@@ -2,7 +2,7 @@
 
 use crate::grid::Point;
 use crate::incremental::{Changes, Update};
-use crate::motion::{Moved, larger};
+use crate::motion::{Moved, Outside, larger};
 use crate::neighbours::Neighbours;
 use crate::pair::Laws;
 use crate::report::StepReport;
@@ -216,12 +216,14 @@ impl<R: Restraint> Fluid<R> {
                 moved.restrained(restraint, now, state, listed, domain, dt);
             }
         }
-        if let Some(i) = moved.outside {
-            let u = &moved.u[i];
+        if let Some(Outside { at, x, u }) = &moved.outside {
             let speed = Vector3::new(u[0], u[1], u[2]).norm();
-            return Err(escaped(state.id[i], &moved.x[i], speed));
+            return Err(escaped(state.id[*at], x, speed));
         }
-        moved.swap(state);
+        match &self.restraint {
+            None => moved.apply_free(state),
+            Some(_) => moved.apply_restrained(state),
+        }
         self.fastest = moved.fastest;
         Ok(())
     }
@@ -260,23 +262,21 @@ impl<R: Restraint> Fluid<R> {
     fn evaluate_changes(&mut self, report: &mut StepReport) -> bool {
         let Some((_, settings)) = &self.restraint else { return false };
         let n = self.state.len();
-        let moved = &self.scratch.moved;
+        let (moved, changes) = (&self.scratch.moved, &mut self.scratch.changes);
         // Nothing held is nothing gained: the bits are then those of a fluid without a policy.
-        if !moved.any_held || moved.movers.len() as f64 > settings.sweep_above * n as f64 {
+        let most_movers = settings.sweep_above * n as f64;
+        if !moved.any_held || moved.movers.len() as f64 > most_movers || !changes.may_try(n) {
             return false;
         }
         let update = Update {
             laws: &self.laws,
             walls: &self.walls,
             neighbours: &self.neighbours,
-            old_x: &moved.x,
-            old_w: &moved.w,
             state: &mut self.state,
             movers: &moved.movers,
             stopped: &moved.stopped,
             tolerance: settings.pressure_tolerance,
-            changes: &mut self.scratch.changes,
-            most_changed: (MOST_CHANGED * n as f64) as usize,
+            changes,
         };
         let Some(looked) = update.run() else { return false };
         report.changed += looked.changed;
@@ -301,11 +301,11 @@ impl<R: Restraint> Fluid<R> {
                 a[k] += gravity[k];
             }
         }
+        if self.restraint.is_some() {
+            self.scratch.changes.evaluated_all(&self.state);
+        }
     }
 }
-
-/// The part of the particles above which changes cost more than everything anew (1).
-const MOST_CHANGED: f64 = 0.6;
 
 /// The greatest acceleration (m/s²).
 fn hardest(a: &[Point]) -> f64 {

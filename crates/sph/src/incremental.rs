@@ -14,19 +14,35 @@ use crate::state::State;
 use crate::walls::Walls;
 use pulp::{Simd, WithSimd};
 
-/// Has moved.
+/// Has another position.
 const MOVED: u8 = 1;
-/// Has a new density.
-const TOUCHED: u8 = 2;
-/// Has a new position, velocity or pressure.
-const CHANGED: u8 = 4;
+/// Has another effective velocity, or may have.
+const TURNED: u8 = 2;
+/// Has another density.
+const TOUCHED: u8 = 4;
+/// Has another position, velocity or pressure.
+const CHANGED: u8 = 8;
 
-/// Marks and lists of the particles that a step changes; empty between two steps.
+/// The part of the particles above which changes cost more than everything anew (1).
+const MOST_CHANGED: f64 = 0.4;
+/// Longest pause between two tries, in steps.
+const LONGEST_PAUSE: u32 = 32;
+
+/// What is remembered from step to step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Changes {
+    /// Positions and P, effective velocities and ρ as the accelerations have them.
+    x: Vec<Point>,
+    w: Vec<Point>,
+    /// Marks of particles and lists of those that have one; empty between two steps.
     marks: Vec<u8>,
     touched: Vec<u32>,
     changed: Vec<u32>,
+    /// Neighbours that are looked at for a particle.
+    near: Vec<u32>,
+    /// Steps until the next try, and how many there were after the last one that was in vain.
+    pub(crate) wait: u32,
+    pub(crate) pause: u32,
 }
 
 /// How much was looked at.
@@ -45,10 +61,6 @@ pub(crate) struct Update<'a> {
     pub(crate) laws: &'a Laws,
     pub(crate) walls: &'a Walls,
     pub(crate) neighbours: &'a Neighbours,
-    /// Positions and P before the step.
-    pub(crate) old_x: &'a [Point],
-    /// Effective velocities and ρ before the step.
-    pub(crate) old_w: &'a [Point],
     /// The particles after kick and drift, with P and ρ as before.
     pub(crate) state: &'a mut State,
     /// Who has moved.
@@ -58,8 +70,6 @@ pub(crate) struct Update<'a> {
     /// Changes of pressure that do not count (Pa).
     pub(crate) tolerance: f64,
     pub(crate) changes: &'a mut Changes,
-    /// Most particles with changes before it is better to compute everything anew.
-    pub(crate) most_changed: usize,
 }
 
 impl Update<'_> {
@@ -72,22 +82,27 @@ impl Update<'_> {
     /// Densities by the pairs with a mover. Returns how many.
     #[inline(always)]
     fn densities<S: Simd>(&mut self, simd: S) -> u64 {
-        let Changes { marks, touched, .. } = &mut *self.changes;
+        let Changes { x: old_x, marks, touched, changed, .. } = &mut *self.changes;
         let kernel = &self.laws.kernel;
         let (x, density) = (&self.state.x, &mut self.state.density);
-        let mut n_pairs = 0;
         for &i in self.movers {
-            marks[i as usize] |= MOVED | TOUCHED;
+            marks[i as usize] = MOVED | TURNED | TOUCHED | CHANGED;
             touched.push(i);
+            changed.push(i);
         }
+        for &i in self.stopped {
+            marks[i as usize] = TURNED | CHANGED;
+            changed.push(i);
+        }
+        let mut n_pairs = 0;
         for &mover in self.movers {
             let i = mover as usize;
-            let (new, old) = (Place::splat(simd, &x[i]), Place::splat(simd, &self.old_x[i]));
+            let (new, old) = (Place::splat(simd, &x[i]), Place::splat(simd, &old_x[i]));
             let mut own = 0.0;
             for at in self.neighbours.candidates(i).chunks(LANES) {
                 let there = named(at, mover);
                 let new = new.squared_distance(&Place::gather(simd, x, there));
-                let old = old.squared_distance(&Place::gather(simd, self.old_x, there));
+                let old = old.squared_distance(&Place::gather(simd, old_x, there));
                 let (new, old) = (kernel.value_and_slope(new).0, kernel.value_and_slope(old).0);
                 let by = ((new - old) * self.laws.mass).array();
                 for (&j, &by) in at.iter().zip(&by) {
@@ -108,7 +123,7 @@ impl Update<'_> {
             for &j in self.neighbours.wall_candidates(i) {
                 let wall = &self.walls.points()[j as usize];
                 let value = |p: &Point| kernel.value(squared_distance(p, wall));
-                own += wall[3] * (value(&x[i]) - value(&self.old_x[i]));
+                own += wall[3] * (value(&x[i]) - value(&old_x[i]));
             }
             density[i] += own;
         }
@@ -118,18 +133,14 @@ impl Update<'_> {
     /// Gives the particles their new pressures and lists those for which something has changed.
     #[inline(always)]
     fn pressures(&mut self) {
-        let Changes { marks, touched, changed } = &mut *self.changes;
-        for &i in self.stopped {
-            marks[i as usize] |= CHANGED;
-            changed.push(i);
-        }
+        let Changes { marks, touched, changed, .. } = &mut *self.changes;
         for &i in touched.iter() {
             let k = i as usize;
             let (p, w, density) = (&mut self.state.x[k], &mut self.state.w[k], self.state.density[k]);
             let term = self.laws.pressure_term(density);
             let difference = term * density * density - p[3] * w[3] * w[3];
             let known = marks[k] & CHANGED != 0;
-            if known || marks[k] & MOVED != 0 || difference.abs() > self.tolerance {
+            if known || difference.abs() > self.tolerance {
                 (p[3], w[3]) = (term, density);
                 if !known {
                     marks[k] |= CHANGED;
@@ -142,40 +153,67 @@ impl Update<'_> {
     /// Accelerations by the pairs with a changed particle. Returns how many.
     #[inline(always)]
     fn accelerations<S: Simd>(&mut self, simd: S) -> u64 {
-        let (laws, Changes { marks, changed, .. }) = (self.laws, &*self.changes);
+        let laws = self.laws;
+        let Changes { x: old_x, w: old_w, marks, changed, near, .. } = &mut *self.changes;
         let (x, w, a) = (&self.state.x, &self.state.w, &mut self.state.a);
-        let (old_x, old_w) = (self.old_x, self.old_w);
         let kernel = &laws.kernel;
         let support_squared = kernel.support() * kernel.support();
         let mut n_pairs = 0;
-        for &here in changed {
+        for &here in changed.iter() {
             let i = here as usize;
-            let new_here = Side::splat(simd, &x[i], &w[i]);
-            let old_here = Side::splat(simd, &old_x[i], &old_w[i]);
             let mut own = [0.0; 3];
-            for at in self.neighbours.candidates(i).chunks(LANES) {
-                let there = named(at, here);
-                let new_there = Side::gather(simd, pick(x, there), pick(w, there));
-                let old_there = Side::gather(simd, pick(old_x, there), pick(old_w, there));
-                let new_squared = Place(new_here.x).squared_distance(&Place(new_there.x));
-                let old_squared = Place(old_here.x).squared_distance(&Place(old_there.x));
-                let near = new_squared.array().map(|squared| squared < support_squared);
-                let was_near = old_squared.array().map(|squared| squared < support_squared);
-                let new = laws.between(&new_here, &new_there, kernel.value_and_slope(new_squared).1);
-                let old = laws.between(&old_here, &old_there, kernel.value_and_slope(old_squared).1);
-                let by = [0, 1, 2].map(|k| (new[k] - old[k]).array());
+            let mut give = |at: &[u32], by: [[f64; LANES]; 3]| {
                 for (l, &j) in at.iter().enumerate() {
-                    let both = marks[j as usize] & CHANGED != 0;
-                    if !(near[l] | was_near[l]) || (both && j < here) {
-                        continue;
-                    }
                     let there = &mut a[j as usize];
                     for k in 0..3 {
                         own[k] += by[k][l];
                         there[k] -= by[k][l];
                     }
-                    n_pairs += 1;
                 }
+            };
+            let turned = marks[i] & TURNED != 0;
+            // Neighbours that stand still as this particle does come first: between those only
+            // pressures change.
+            let candidates = self.neighbours.candidates(i);
+            near.resize(candidates.len(), 0);
+            let (mut n_still, mut from) = (0, candidates.len());
+            for &j in candidates {
+                let mark = marks[j as usize];
+                // A pair of changed particles belongs to the first of them.
+                let elsewhere = mark & CHANGED != 0 && j < here;
+                let is_near = squared_distance(&x[i], &x[j as usize]) < support_squared;
+                if turned || mark & TURNED != 0 {
+                    let was_near =
+                        squared_distance(&old_x[i], &old_x[j as usize]) < support_squared;
+                    near[from - 1] = j;
+                    from -= usize::from(!elsewhere && (is_near || was_near));
+                } else {
+                    near[n_still] = j;
+                    n_still += usize::from(!elsewhere && is_near);
+                }
+            }
+            n_pairs += (n_still + candidates.len() - from) as u64;
+            let new_here = Side::splat(simd, &x[i], &w[i]);
+            let old_here = Side::splat(simd, &old_x[i], &old_w[i]);
+            for at in near[..n_still].chunks(LANES) {
+                let there = named(at, here);
+                let [x0, x1, x2, new_term] = transpose(simd, pick(x, there));
+                let [_, _, _, old_term] = transpose(simd, pick(old_x, there));
+                let rise = (new_here.pressure_term - old_here.pressure_term) + (new_term - old_term);
+                let squared = Place(new_here.x).squared_distance(&Place([x0, x1, x2]));
+                let slope = kernel.value_and_slope(squared).1;
+                let by = laws.by_pressure(&new_here.x, &[x0, x1, x2], rise, slope);
+                give(at, by.map(Four::array));
+            }
+            for at in near[from..candidates.len()].chunks(LANES) {
+                let there = named(at, here);
+                let new_there = Side::gather(simd, pick(x, there), pick(w, there));
+                let old_there = Side::gather(simd, pick(old_x, there), pick(old_w, there));
+                let new_squared = Place(new_here.x).squared_distance(&Place(new_there.x));
+                let old_squared = Place(old_here.x).squared_distance(&Place(old_there.x));
+                let new = laws.between(&new_here, &new_there, kernel.value_and_slope(new_squared).1);
+                let old = laws.between(&old_here, &old_there, kernel.value_and_slope(old_squared).1);
+                give(at, [0, 1, 2].map(|k| (new[k] - old[k]).array()));
             }
             let (new_here, old_here) = (Side::new(&x[i], &w[i]), Side::new(&old_x[i], &old_w[i]));
             for &j in self.neighbours.wall_candidates(i) {
@@ -207,17 +245,45 @@ impl WithSimd for Update<'_> {
         let density_pairs = self.densities(simd);
         self.pressures();
         let n_changed = self.changes.changed.len();
-        let looked = (n_changed <= self.most_changed).then(|| {
+        let worth_it = n_changed as f64 <= MOST_CHANGED * self.state.len() as f64;
+        let looked = worth_it.then(|| {
             let force_pairs = self.accelerations(simd);
             Looked { density_pairs, force_pairs, changed: n_changed as u64 }
         });
-        self.changes.clear();
+        self.changes.finish(self.state, worth_it);
         looked
     }
 }
 
 impl Changes {
-    fn clear(&mut self) {
+    /// Everything has been computed from this state.
+    pub(crate) fn evaluated_all(&mut self, state: &State) {
+        self.x.clone_from(&state.x);
+        self.w.clone_from(&state.w);
+    }
+
+    /// True if it is time for a try: after one that was in vain the next ones are too, mostly. Not
+    /// before everything was computed once.
+    pub(crate) fn may_try(&mut self, n_particles: usize) -> bool {
+        if self.wait > 0 {
+            self.wait -= 1;
+            return false;
+        }
+        self.x.len() == n_particles
+    }
+
+    /// Takes over what has been computed, and removes the marks.
+    fn finish(&mut self, state: &State, worth_it: bool) {
+        if worth_it {
+            for &i in &self.changed {
+                let i = i as usize;
+                (self.x[i], self.w[i]) = (state.x[i], state.w[i]);
+            }
+            self.pause = 0;
+        } else {
+            self.pause = (2 * self.pause + 1).min(LONGEST_PAUSE);
+            self.wait = self.pause;
+        }
         for &i in self.touched.iter().chain(&self.changed) {
             self.marks[i as usize] = 0;
         }

@@ -9,12 +9,15 @@ use arps::{Motion, Particle, Restraint, Vector3};
 /// The particles after a kick and a drift, and what was noticed on the way.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Moved {
+    /// New momenta per mass of all particles.
+    pub(crate) u: Vec<Point>,
+    /// New positions and effective velocities: of all particles, or of the movers alone if there is a
+    /// policy.
     pub(crate) x: Vec<Point>,
     pub(crate) w: Vec<Point>,
-    pub(crate) u: Vec<Point>,
-    /// Particles whose position has changed.
+    /// Under a policy: particles whose position changes.
     pub(crate) movers: Vec<u32>,
-    /// Particles that have moved before and stand still now.
+    /// Under a policy: particles that have moved before and stand still now.
     pub(crate) stopped: Vec<u32>,
     /// Greatest speed of the momenta (m/s).
     pub(crate) fastest: f64,
@@ -22,8 +25,16 @@ pub(crate) struct Moved {
     pub(crate) farthest_squared: f64,
     /// True if a particle may be restrained at all.
     pub(crate) any_held: bool,
-    /// A particle that has left the domain.
-    pub(crate) outside: Option<usize>,
+    /// The first particle that has left the domain.
+    pub(crate) outside: Option<Outside>,
+}
+
+/// A particle that has left the domain.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Outside {
+    pub(crate) at: usize,
+    pub(crate) x: Point,
+    pub(crate) u: Point,
 }
 
 impl Moved {
@@ -42,20 +53,26 @@ impl Moved {
     pub(crate) fn free(&mut self, state: &State, listed: &[Point], domain: &Bounds, dt: f64) {
         self.clear();
         let (mut fastest, mut farthest, mut inside) = (0.0, 0.0, true);
-        for i in 0..state.len() {
-            let u = kick(&state.u[i], &state.a[i], dt);
-            let x = drift(&state.x[i], &u, dt);
-            inside &= is_inside(domain, &x);
+        self.u.extend(state.u.iter().zip(&state.a).map(|(u, a)| {
+            let u = kick(u, a, dt);
             fastest = larger(squared(&u), fastest);
-            farthest = larger(squared(&difference(&x, &listed[i])), farthest);
-            self.x.push(x);
-            self.u.push(u);
-            self.w.push([u[0], u[1], u[2], state.w[i][3]]);
+            u
+        }));
+        self.x.extend(state.x.iter().zip(&self.u).zip(listed).map(|((x, u), listed)| {
+            let x = drift(x, u, dt);
+            inside &= is_inside(domain, &x);
+            farthest = larger(squared(&difference(&x, listed)), farthest);
+            x
+        }));
+        self.w.extend(self.u.iter().zip(&state.w).map(|(u, w)| [u[0], u[1], u[2], w[3]]));
+        (self.fastest, self.farthest_squared) = (fastest.sqrt(), farthest);
+        if !inside {
+            let at = self.x.iter().position(|x| !is_inside(domain, x));
+            self.outside = at.map(|at| Outside { at, x: self.x[at], u: self.u[at] });
         }
-        self.finish(domain, fastest, farthest, inside);
     }
 
-    /// The same under a policy. `mass` is that of a particle (kg), `time` the time at the end (s).
+    /// The same under a policy. `mass` is that of a particle (kg), `time` the time at the start (s).
     pub(crate) fn restrained<R: Restraint>(
         &mut self,
         (policy, settings): &(R, RestraintSettings),
@@ -66,65 +83,74 @@ impl Moved {
         dt: f64,
     ) {
         self.clear();
-        let (mut fastest, mut farthest, mut inside) = (0.0, 0.0, true);
+        let (mut fastest, mut any_held) = (0.0, false);
         // 1 − e^(−dt/τ): du/dt = a − u/τ is solved exactly, as `arps::bleeding_kick` does.
-        let bleeding = settings.bleeding.map(|tau| (tau, -(-dt / tau).exp_m1()));
+        let (tau, lost) = settings.bleeding.map_or((0.0, 0.0), |tau| (tau, -(-dt / tau).exp_m1()));
+        let bleeds = settings.bleeding.is_some();
         let inactive_squared = settings.inactivity * settings.inactivity;
-        for i in 0..state.len() {
-            let (x, w, u, a) = (&state.x[i], &state.w[i], &state.u[i], &state.a[i]);
-            let was_still = w[0] == 0.0 && w[1] == 0.0 && w[2] == 0.0;
+        let (movers, stopped) = (&mut self.movers, &mut self.stopped);
+        let particles = state.x.iter().zip(&state.w).zip(state.u.iter().zip(&state.a)).enumerate();
+        self.u.extend(particles.map(|(i, ((x, w), (u, a)))| {
+            let was_still = squared(w) == 0.0;
             let position = Vector3::new(x[0], x[1], x[2]);
             let held = policy.at(&Particle { index: i, mass, x: position, time });
-            self.any_held |= !held.is_free();
-            let u = match bleeding {
-                Some((tau, lost)) if was_still && !held.is_free() => {
-                    let bled = |k: usize| u[k] + (tau * a[k] - u[k]) * lost;
-                    [bled(0), bled(1), bled(2), 0.0]
-                }
-                _ => kick(u, a, dt),
+            any_held |= !held.is_free();
+            let u = if bleeds && was_still && !held.is_free() {
+                let bled = |k: usize| u[k] + (tau * a[k] - u[k]) * lost;
+                [bled(0), bled(1), bled(2), 0.0]
+            } else {
+                kick(u, a, dt)
             };
-            let p = Vector3::new(u[0], u[1], u[2]) * mass;
-            let v = match held.motion(&p) {
+            fastest = larger(squared(&u), fastest);
+            let v = match held.motion(&(Vector3::new(u[0], u[1], u[2]) * mass)) {
                 Motion::Rest => [0.0; 4],
                 Motion::Full => u,
                 Motion::Transition => {
-                    let v = held.velocity(&p);
+                    let v = held.velocity(&(Vector3::new(u[0], u[1], u[2]) * mass));
                     [v.x, v.y, v.z, 0.0]
                 }
             };
             let speed_squared = squared(&v);
-            let moves = speed_squared > 0.0 && speed_squared >= inactive_squared;
-            self.u.push(u);
-            fastest = larger(squared(&u), fastest);
-            if moves {
-                let x = drift(x, &v, dt);
-                inside &= is_inside(domain, &x);
-                farthest = larger(squared(&difference(&x, &listed[i])), farthest);
-                self.x.push(x);
+            if speed_squared > 0.0 && speed_squared >= inactive_squared {
+                movers.push(i as u32);
+                self.x.push(drift(x, &v, dt));
                 self.w.push([v[0], v[1], v[2], w[3]]);
-                self.movers.push(i as u32);
-            } else {
-                if !was_still {
-                    self.stopped.push(i as u32);
-                }
-                self.x.push(*x);
-                self.w.push([0.0, 0.0, 0.0, w[3]]);
+            } else if !was_still {
+                stopped.push(i as u32);
             }
+            u
+        }));
+        let (mut farthest, mut inside) = (0.0, true);
+        for (x, &i) in self.x.iter().zip(&self.movers) {
+            inside &= is_inside(domain, x);
+            farthest = larger(squared(&difference(x, &listed[i as usize])), farthest);
         }
-        self.finish(domain, fastest, farthest, inside);
-    }
-
-    fn finish(&mut self, domain: &Bounds, fastest: f64, farthest: f64, inside: bool) {
-        (self.fastest, self.farthest_squared) = (fastest.sqrt(), farthest);
+        (self.fastest, self.farthest_squared) = (f64::sqrt(fastest), farthest);
+        self.any_held = any_held;
         if !inside {
-            self.outside = self.x.iter().position(|x| !is_inside(domain, x));
+            let k = self.x.iter().position(|x| !is_inside(domain, x));
+            self.outside = k.map(|k| {
+                let at = self.movers[k] as usize;
+                Outside { at, x: self.x[k], u: self.u[at] }
+            });
         }
     }
 
-    /// Gives the new particles to the state and takes the old ones.
-    pub(crate) fn swap(&mut self, state: &mut State) {
+    /// Moves the particles of the state, as [`Moved::free`] has found.
+    pub(crate) fn apply_free(&mut self, state: &mut State) {
         std::mem::swap(&mut self.x, &mut state.x);
         std::mem::swap(&mut self.w, &mut state.w);
+        std::mem::swap(&mut self.u, &mut state.u);
+    }
+
+    /// Moves the particles of the state, as [`Moved::restrained`] has found.
+    pub(crate) fn apply_restrained(&mut self, state: &mut State) {
+        for ((&i, x), w) in self.movers.iter().zip(&self.x).zip(&self.w) {
+            (state.x[i as usize], state.w[i as usize]) = (*x, *w);
+        }
+        for &i in &self.stopped {
+            state.w[i as usize] = [0.0, 0.0, 0.0, state.w[i as usize][3]];
+        }
         std::mem::swap(&mut self.u, &mut state.u);
     }
 }

@@ -105,6 +105,14 @@ impl Laws {
         [s * d[0], s * d[1], s * d[2]]
     }
 
+    /// The part of [`Laws::between`] by a sum Pᵢ + Pⱼ = `terms`, for particles at `x` and `y` (m).
+    #[inline(always)]
+    pub(crate) fn by_pressure<N: Number>(&self, x: &[N; 3], y: &[N; 3], terms: N, slope: N) -> [N; 3] {
+        let d = difference(x, y);
+        let s = terms * (slope * -self.mass);
+        [s * d[0], s * d[1], s * d[2]]
+    }
+
     /// The acceleration of `here` by wall particles (m/s²) at `x` with the masses `mass` (kg): they have
     /// the pressure of the particle that they touch (Akinci2012 Eq. (9)) and the rest density.
     #[inline(always)]
