@@ -17,7 +17,7 @@ pub(crate) struct Laws {
     pub(crate) mass: f64,
     /// Factor of the volumes of wall particles, see [`walls::lattice_sums`].
     pub(crate) wall_factor: f64,
-    rest_density: f64,
+    gravity: [f64; 3],
     /// 2 α h c_s of Manteaux2013 Eq. (6), between particles and with walls.
     viscous: f64,
     wall_viscous: f64,
@@ -81,7 +81,7 @@ impl Laws {
             tait: Tait::new(settings.rest_density, settings.sound_speed),
             mass: settings.rest_density / everywhere,
             wall_factor: plate / everywhere,
-            rest_density: settings.rest_density,
+            gravity: settings.gravity.into(),
             viscous: 2.0 * settings.viscosity * h * settings.sound_speed,
             wall_viscous: 2.0 * settings.wall_viscosity * h * settings.sound_speed,
             softening: 0.01 * h * h,
@@ -113,13 +113,22 @@ impl Laws {
         [s * d[0], s * d[1], s * d[2]]
     }
 
-    /// The acceleration of `here` by wall particles (m/s²) at `x` with the masses `mass` (kg): they have
-    /// the pressure of the particle that they touch (Akinci2012 Eq. (9)) and the rest density.
+    /// The acceleration of `here` by wall particles (m/s²) at `x` with the masses `mass` (kg). They have
+    /// the density of the particle that they touch, and its pressure with the weight of the fluid
+    /// between the two, as if the fluid were at rest (Adami2012 Eq. (27), pair by pair), but for no
+    /// pressure where it has none.
+    ///
+    /// With no pressure of their own (Akinci2012 Eq. (9)) the lowest layer is pressed together twice as
+    /// much, and without the weight what touches a wall hangs on its neighbours.
     #[inline(always)]
     pub(crate) fn by_wall<N: Number>(&self, here: &Side<N>, x: &[N; 3], mass: N, slope: N) -> [N; 3] {
         let d = difference(&here.x, x);
-        let drag = self.drag(&d, &here.w, here.density + self.rest_density) * self.wall_viscous;
-        let s = (drag - here.pressure_term) * (slope * mass);
+        let drag = self.drag(&d, &here.w, here.density + here.density) * self.wall_viscous;
+        let [gx, gy, gz] = self.gravity;
+        let below = d[0] * -gx + d[1] * -gy + d[2] * -gz;
+        let weight = (below / here.density).within(here.pressure_term);
+        let pressure = here.pressure_term + here.pressure_term + weight;
+        let s = (drag - pressure) * (slope * mass);
         [s * d[0], s * d[1], s * d[2]]
     }
 

@@ -67,7 +67,7 @@ impl FluidSettings {
             rest_density: 1000.0,
             sound_speed: 10.0 * (2.0 * 9.81 * height).sqrt(),
             viscosity: 0.1,
-            wall_viscosity: 0.1,
+            wall_viscosity: 0.02,
             gravity,
             domain,
             skin: 0.3,
