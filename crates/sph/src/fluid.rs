@@ -11,7 +11,7 @@ use crate::settings::{FluidError, FluidSettings};
 use crate::source::{Emitter, Sink};
 use crate::state::{Spare, State};
 use crate::sweep;
-use crate::walls::Walls;
+use crate::walls::{WallState, Walls};
 use arps::Restraint;
 use nalgebra::Vector3;
 
@@ -21,6 +21,8 @@ pub struct Fluid<R = ()> {
     pub(crate) settings: FluidSettings,
     pub(crate) laws: Laws,
     pub(crate) walls: Walls,
+    /// The part of the walls that fluid may touch.
+    pub(crate) touched: WallState,
     pub(crate) state: State,
     /// Positions when neighbours were last listed.
     pub(crate) listed: Vec<Point>,
@@ -65,7 +67,8 @@ impl Fluid {
         }
         let laws = Laws::new(&settings);
         let reach = laws.kernel.support() + settings.skin * settings.spacing;
-        walls.prepare(&laws.kernel, settings.rest_density, laws.wall_factor, reach);
+        let densities = (laws.mass / settings.spacing.powi(3), settings.rest_density);
+        walls.prepare(&laws.kernel, densities, laws.wall_factor, reach);
         let mut state = State::default();
         for (id, (x, v)) in (0..).zip(positions.iter().zip(velocities)) {
             if !settings.domain.contains(x) || !v.norm().is_finite() {
@@ -78,6 +81,7 @@ impl Fluid {
             settings,
             laws,
             walls,
+            touched: WallState::default(),
             state,
             listed: Vec::new(),
             neighbours: Neighbours::default(),
@@ -121,6 +125,7 @@ impl<R: Restraint> Fluid<R> {
             settings: self.settings,
             laws: self.laws,
             walls: self.walls,
+            touched: self.touched,
             state: self.state,
             listed: self.listed,
             neighbours: self.neighbours,
@@ -253,7 +258,7 @@ impl<R: Restraint> Fluid<R> {
         let reach = self.laws.kernel.support() + self.settings.skin * self.settings.spacing;
         self.neighbours.sort(&self.state.x, reach, &mut self.scratch.order);
         self.state.sort(&self.scratch.order, &mut self.scratch.spare);
-        self.neighbours.list(&self.state.x, &self.walls, reach);
+        self.neighbours.list(&self.state.x, &self.walls, reach, &mut self.touched);
         self.listed.clone_from(&self.state.x);
     }
 
@@ -270,7 +275,7 @@ impl<R: Restraint> Fluid<R> {
         }
         let update = Update {
             laws: &self.laws,
-            walls: &self.walls,
+            walls: &mut self.touched,
             neighbours: &self.neighbours,
             state: &mut self.state,
             movers: &moved.movers,
@@ -289,12 +294,15 @@ impl<R: Restraint> Fluid<R> {
     /// effective velocities.
     fn evaluate_all(&mut self) {
         let State { x, w, a, density, .. } = &mut self.state;
-        sweep::densities(&self.laws, x, &self.walls, &mut self.neighbours, density);
+        sweep::densities(&self.laws, x, &mut self.touched, &mut self.neighbours, density);
         for ((x, w), &density) in x.iter_mut().zip(w.iter_mut()).zip(density.iter()) {
             x[3] = self.laws.pressure_term(density);
             w[3] = density;
         }
-        sweep::accelerations(&self.laws, x, w, &self.walls, &mut self.neighbours, a);
+        for (x, &density) in self.touched.x.iter_mut().zip(&self.touched.density) {
+            x[3] = self.laws.pressure_term(density);
+        }
+        sweep::accelerations(&self.laws, x, w, &self.touched, &mut self.neighbours, a);
         let gravity = self.settings.gravity;
         for a in a {
             for k in 0..3 {
@@ -302,7 +310,7 @@ impl<R: Restraint> Fluid<R> {
             }
         }
         if self.restraint.is_some() {
-            self.scratch.changes.evaluated_all(&self.state);
+            self.scratch.changes.evaluated_all(&self.state, &self.touched);
         }
     }
 }

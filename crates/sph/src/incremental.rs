@@ -11,7 +11,7 @@ use crate::lanes::{self, Four, LANES};
 use crate::neighbours::Neighbours;
 use crate::pair::{Laws, Side, transpose};
 use crate::state::State;
-use crate::walls::Walls;
+use crate::walls::WallState;
 use pulp::{Simd, WithSimd};
 
 /// Has another position.
@@ -34,6 +34,12 @@ pub(crate) struct Changes {
     /// Positions and P, effective velocities and ρ as the accelerations have them.
     x: Vec<Point>,
     w: Vec<Point>,
+    /// P of the touched walls as the accelerations have it.
+    wall_terms: Vec<f64>,
+    /// The same marks and lists for the walls: another density, another pressure.
+    wall_marks: Vec<u8>,
+    touched_walls: Vec<u32>,
+    changed_walls: Vec<u32>,
     /// Marks of particles and lists of those that have one; empty between two steps.
     marks: Vec<u8>,
     touched: Vec<u32>,
@@ -59,7 +65,7 @@ pub(crate) struct Looked {
 /// All that an update needs.
 pub(crate) struct Update<'a> {
     pub(crate) laws: &'a Laws,
-    pub(crate) walls: &'a Walls,
+    pub(crate) walls: &'a mut WallState,
     pub(crate) neighbours: &'a Neighbours,
     /// The particles after kick and drift, with P and ρ as before.
     pub(crate) state: &'a mut State,
@@ -82,7 +88,8 @@ impl Update<'_> {
     /// Densities by the pairs with a mover. Returns how many.
     #[inline(always)]
     fn densities<S: Simd>(&mut self, simd: S) -> u64 {
-        let Changes { x: old_x, marks, touched, changed, .. } = &mut *self.changes;
+        let Changes { x: old_x, marks, touched, changed, wall_marks, touched_walls, .. } =
+            &mut *self.changes;
         let kernel = &self.laws.kernel;
         let (x, density) = (&self.state.x, &mut self.state.density);
         for &i in self.movers {
@@ -121,9 +128,18 @@ impl Update<'_> {
                 }
             }
             for &j in self.neighbours.wall_candidates(i) {
-                let wall = &self.walls.points()[j as usize];
-                let value = |p: &Point| kernel.value(squared_distance(p, wall));
-                own += wall[3] * (value(&x[i]) - value(&old_x[i]));
+                let k = j as usize;
+                let value = |p: &Point| kernel.value(squared_distance(p, &self.walls.x[k]));
+                let by = value(&x[i]) - value(&old_x[i]);
+                if by == 0.0 {
+                    continue;
+                }
+                own += self.walls.mass[k] * by;
+                self.walls.density[k] += self.laws.mass * by;
+                if wall_marks[k] & TOUCHED == 0 {
+                    wall_marks[k] |= TOUCHED;
+                    touched_walls.push(j);
+                }
             }
             density[i] += own;
         }
@@ -133,7 +149,18 @@ impl Update<'_> {
     /// Gives the particles their new pressures and lists those for which something has changed.
     #[inline(always)]
     fn pressures(&mut self) {
-        let Changes { marks, touched, changed, .. } = &mut *self.changes;
+        let Changes { marks, touched, changed, wall_marks, touched_walls, changed_walls, .. } =
+            &mut *self.changes;
+        for &j in touched_walls.iter() {
+            let k = j as usize;
+            let (x, density) = (&mut self.walls.x[k], self.walls.density[k]);
+            let term = self.laws.pressure_term(density);
+            if (term - x[3]).abs() * density * density > self.tolerance {
+                x[3] = term;
+                wall_marks[k] |= CHANGED;
+                changed_walls.push(j);
+            }
+        }
         for &i in touched.iter() {
             let k = i as usize;
             let (p, w, density) = (&mut self.state.x[k], &mut self.state.w[k], self.state.density[k]);
@@ -154,7 +181,8 @@ impl Update<'_> {
     #[inline(always)]
     fn accelerations<S: Simd>(&mut self, simd: S) -> u64 {
         let laws = self.laws;
-        let Changes { x: old_x, w: old_w, marks, changed, near, .. } = &mut *self.changes;
+        let Changes { x: old_x, w: old_w, marks, changed, near, wall_terms, changed_walls, .. } =
+            &mut *self.changes;
         let (x, w, a) = (&self.state.x, &self.state.w, &mut self.state.a);
         let kernel = &laws.kernel;
         let support_squared = kernel.support() * kernel.support();
@@ -217,19 +245,35 @@ impl Update<'_> {
             }
             let (new_here, old_here) = (Side::new(&x[i], &w[i]), Side::new(&old_x[i], &old_w[i]));
             for &j in self.neighbours.wall_candidates(i) {
-                let wall = &self.walls.points()[j as usize];
+                let (wall, mass) = (&self.walls.x[j as usize], self.walls.mass[j as usize]);
                 let place = [wall[0], wall[1], wall[2]];
-                let by = |side: &Side<f64>, p: &Point| {
+                let by = |side: &Side<f64>, p: &Point, term: f64| {
                     let slope = kernel.slope_over_r(squared_distance(p, wall));
-                    laws.by_wall(side, &place, wall[3], slope)
+                    laws.by_wall(side, &place, term, mass, slope)
                 };
-                let (new, old) = (by(&new_here, &x[i]), by(&old_here, &old_x[i]));
+                let old_term = wall_terms[j as usize];
+                let new = by(&new_here, &x[i], wall[3]);
+                let old = by(&old_here, &old_x[i], old_term);
                 for k in 0..3 {
                     own[k] += new[k] - old[k];
                 }
             }
             for k in 0..3 {
                 a[i][k] += own[k];
+            }
+        }
+        for &j in changed_walls.iter() {
+            let (wall, mass) = (&self.walls.x[j as usize], self.walls.mass[j as usize]);
+            let rise = wall[3] - wall_terms[j as usize];
+            for &i in self.neighbours.fluid_candidates(j as usize) {
+                // What has changed itself has the new pressure already.
+                if marks[i as usize] & CHANGED == 0 {
+                    let (x, a) = (&x[i as usize], &mut a[i as usize]);
+                    let s = -rise * mass * kernel.slope_over_r(squared_distance(x, wall));
+                    for k in 0..3 {
+                        a[k] += s * (x[k] - wall[k]);
+                    }
+                }
             }
         }
         n_pairs
@@ -242,6 +286,7 @@ impl WithSimd for Update<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) -> Option<Looked> {
         self.changes.marks.resize(self.state.len(), 0);
+        self.changes.wall_marks.resize(self.walls.x.len(), 0);
         let density_pairs = self.densities(simd);
         self.pressures();
         let n_changed = self.changes.changed.len();
@@ -250,16 +295,18 @@ impl WithSimd for Update<'_> {
             let force_pairs = self.accelerations(simd);
             Looked { density_pairs, force_pairs, changed: n_changed as u64 }
         });
-        self.changes.finish(self.state, worth_it);
+        self.changes.finish(self.state, self.walls, worth_it);
         looked
     }
 }
 
 impl Changes {
     /// Everything has been computed from this state.
-    pub(crate) fn evaluated_all(&mut self, state: &State) {
+    pub(crate) fn evaluated_all(&mut self, state: &State, walls: &WallState) {
         self.x.clone_from(&state.x);
         self.w.clone_from(&state.w);
+        self.wall_terms.clear();
+        self.wall_terms.extend(walls.x.iter().map(|x| x[3]));
     }
 
     /// True if it is time for a try: after one that was in vain the next ones are too, mostly. Not
@@ -273,11 +320,14 @@ impl Changes {
     }
 
     /// Takes over what has been computed, and removes the marks.
-    fn finish(&mut self, state: &State, worth_it: bool) {
+    fn finish(&mut self, state: &State, walls: &WallState, worth_it: bool) {
         if worth_it {
             for &i in &self.changed {
                 let i = i as usize;
                 (self.x[i], self.w[i]) = (state.x[i], state.w[i]);
+            }
+            for &j in &self.changed_walls {
+                self.wall_terms[j as usize] = walls.x[j as usize][3];
             }
             self.pause = 0;
         } else {
@@ -287,8 +337,13 @@ impl Changes {
         for &i in self.touched.iter().chain(&self.changed) {
             self.marks[i as usize] = 0;
         }
+        for &j in &self.touched_walls {
+            self.wall_marks[j as usize] = 0;
+        }
         self.touched.clear();
         self.changed.clear();
+        self.touched_walls.clear();
+        self.changed_walls.clear();
     }
 }
 

@@ -25,8 +25,6 @@ pub(crate) trait Number:
     fn at_least(self, bound: f64) -> Self;
     /// The smaller of this and `bound`.
     fn at_most(self, bound: f64) -> Self;
-    /// The nearest number from −`bound` to `bound`, which is not negative.
-    fn within(self, bound: Self) -> Self;
     /// `from` − this.
     fn from_which(self, from: f64) -> Self;
 }
@@ -45,11 +43,6 @@ impl Number for f64 {
     #[inline(always)]
     fn at_most(self, bound: f64) -> Self {
         if self < bound { self } else { bound }
-    }
-
-    #[inline(always)]
-    fn within(self, bound: Self) -> Self {
-        self.at_most(bound).at_least(-bound)
     }
 
     #[inline(always)]
@@ -165,13 +158,6 @@ impl<S: Simd> Number for Four<S> {
     }
 
     #[inline(always)]
-    fn within(self, bound: Self) -> Self {
-        let Four { simd, lanes } = self;
-        let upper = simd.min_f64s(lanes, bound.lanes);
-        Four { simd, lanes: simd.max_f64s(upper, simd.neg_f64s(bound.lanes)) }
-    }
-
-    #[inline(always)]
     fn from_which(self, from: f64) -> Self {
         Four::splat(self.simd, from) - self
     }
@@ -194,8 +180,7 @@ mod tests {
     struct Formula([f64; LANES]);
 
     fn formula<N: Number>(x: N) -> N {
-        let bound = x.at_least(0.4).at_most(50.0);
-        ((x * x + 0.3).root() / x.at_least(0.1) - x.within(bound)).from_which(1.7) * 0.9
+        ((x * x + 0.3).root() / x.at_least(0.1) - x.at_most(0.2)).from_which(1.7) * 0.9
     }
 
     impl WithSimd for Formula {

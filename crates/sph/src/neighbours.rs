@@ -5,7 +5,7 @@
 
 use crate::grid::{Columns, Grid, Point};
 use crate::lanes::{self, LANES};
-use crate::walls::Walls;
+use crate::walls::{WallState, Walls};
 use mesh_core::par;
 use pulp::{Simd, WithSimd};
 
@@ -32,6 +32,12 @@ impl Lists {
     #[inline(always)]
     pub(crate) fn candidates(&self, k: usize) -> &[u32] {
         &self.candidates[self.start[k] as usize..self.start[k + 1] as usize]
+    }
+
+    /// The candidates of all particles of the block.
+    fn all_mut(&mut self) -> &mut [u32] {
+        let end = self.start.last().map_or(0, |&end| end as usize);
+        &mut self.candidates[..end]
     }
 
     /// Neighbours of particle `k` within the support, and F for each, padded to whole lanes.
@@ -152,12 +158,36 @@ impl WithSimd for Listing<'_> {
     }
 }
 
+/// Lists the fluid around a block of particles of the walls.
+struct WallListing<'a> {
+    grid: &'a Grid,
+    columns: &'a Columns,
+    x: &'a [Point],
+    reach: f64,
+    lists: &'a mut Lists,
+}
+
+impl WithSimd for WallListing<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.lists.clear();
+        for p in self.x {
+            self.lists.push(self.grid, self.columns, p, self.reach, usize::MAX);
+        }
+        self.lists.finish();
+    }
+}
+
 /// The neighbours of all particles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Neighbours {
     grid: Grid,
     columns: Columns,
     pub(crate) blocks: Vec<Block>,
+    /// Fluid particles around each particle of the walls that fluid may touch.
+    pub(crate) wall_blocks: Vec<Lists>,
 }
 
 impl Neighbours {
@@ -166,8 +196,9 @@ impl Neighbours {
         self.grid.build(x, reach, order);
     }
 
-    /// Lists the neighbours of particles that are sorted.
-    pub(crate) fn list(&mut self, x: &[Point], walls: &Walls, reach: f64) {
+    /// Lists the neighbours of particles that are sorted, and puts the particles of the walls that are
+    /// among them into `touched`.
+    pub(crate) fn list(&mut self, x: &[Point], walls: &Walls, reach: f64, touched: &mut WallState) {
         self.blocks.resize_with(x.len().div_ceil(BLOCK), Block::default);
         self.columns.fill(x);
         let (grid, columns) = (&self.grid, &self.columns);
@@ -176,6 +207,24 @@ impl Neighbours {
             let (first, x) = (b * BLOCK, &x[b * BLOCK..b * BLOCK + part.len()]);
             lanes::run(Listing { grid, columns, walls, first, x, reach, block });
         });
+        touched.clear(walls);
+        for block in &mut self.blocks {
+            for j in block.wall.all_mut() {
+                *j = touched.place_of(walls, *j);
+            }
+        }
+        self.wall_blocks.resize_with(touched.x.len().div_ceil(BLOCK), Lists::default);
+        let mut no_output = vec![(); touched.x.len()];
+        par::blocks(&mut self.wall_blocks, &mut no_output, BLOCK, |b, lists, part| {
+            let x = &touched.x[b * BLOCK..b * BLOCK + part.len()];
+            lanes::run(WallListing { grid, columns, x, reach, lists });
+        });
+    }
+
+    /// Candidates of particle `i` of the touched walls in the fluid.
+    #[inline(always)]
+    pub(crate) fn fluid_candidates(&self, i: usize) -> &[u32] {
+        self.wall_blocks[i / BLOCK].candidates(i % BLOCK)
     }
 
     /// Candidates of particle `i` in the fluid.

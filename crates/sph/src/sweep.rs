@@ -6,24 +6,60 @@
 use crate::grid::Point;
 use crate::kernel::CubicSpline;
 use crate::lanes::{self, Four, LANES};
-use crate::neighbours::{BLOCK, Block, Neighbours};
+use crate::neighbours::{BLOCK, Block, Lists, Neighbours};
 use crate::pair::{Laws, Side, transpose};
-use crate::walls::Walls;
+use crate::walls::WallState;
 use mesh_core::par;
 use pulp::{Simd, WithSimd};
 
-/// Densities (kg/m³) of all particles, into `density`; finds the neighbours within the support.
+/// Densities (kg/m³) of all particles of the fluid, into `density`, and of the walls that it touches;
+/// finds the neighbours within the support.
 pub(crate) fn densities(
     laws: &Laws,
     x: &[Point],
-    walls: &Walls,
+    walls: &mut WallState,
     neighbours: &mut Neighbours,
     density: &mut [f64],
 ) {
+    let seen = &*walls;
     par::blocks(&mut neighbours.blocks, density, BLOCK, |b, block, density| {
-        let (walls, first) = (walls.points(), b * BLOCK);
-        lanes::run(Densities { laws, x, walls, first, block, density });
+        let first = b * BLOCK;
+        lanes::run(Densities { laws, x, walls: seen, first, block, density });
     });
+    let WallState { x: places, own, density, .. } = walls;
+    par::blocks(&mut neighbours.wall_blocks, density, BLOCK, |b, lists, density| {
+        let range = b * BLOCK..b * BLOCK + density.len();
+        let (places, own) = (&places[range.clone()], &own[range]);
+        lanes::run(WallDensities { laws, x, places, own, lists, density });
+    });
+}
+
+/// The densities of a block of particles of the walls.
+struct WallDensities<'a> {
+    laws: &'a Laws,
+    x: &'a [Point],
+    places: &'a [Point],
+    own: &'a [f64],
+    lists: &'a mut Lists,
+    density: &'a mut [f64],
+}
+
+impl WithSimd for WallDensities<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let kernel = &self.laws.kernel;
+        let support_squared = kernel.support() * kernel.support();
+        for (k, slot) in self.density.iter_mut().enumerate() {
+            let (_, weights) = self.lists.activate(k, &self.places[k], self.x, support_squared, 0);
+            let mut fluid = Four::splat(simd, 0.0);
+            for four in weights.chunks_exact_mut(LANES) {
+                fluid = fluid + weigh(simd, kernel, four);
+            }
+            *slot = self.own[k] + self.laws.mass * fluid.total();
+        }
+    }
 }
 
 /// The densities of a block. A type of its own and not a closure, since only this is compiled for the
@@ -31,7 +67,7 @@ pub(crate) fn densities(
 struct Densities<'a> {
     laws: &'a Laws,
     x: &'a [Point],
-    walls: &'a [Point],
+    walls: &'a WallState,
     first: usize,
     block: &'a mut Block,
     density: &'a mut [f64],
@@ -59,11 +95,10 @@ fn densities_of_block<S: Simd>(simd: S, task: Densities<'_>) {
         for four in weights.chunks_exact_mut(LANES) {
             fluid = fluid + weigh(simd, kernel, four);
         }
-        let (active, weights) = block.wall.activate(k, p, walls, support_squared, 0);
+        let (active, weights) = block.wall.activate(k, p, &walls.x, support_squared, 0);
         let mut wall = Four::splat(simd, 0.0);
         for (four, at) in weights.chunks_exact_mut(LANES).zip(active.chunks_exact(LANES)) {
-            let [_, _, _, mass] = transpose(simd, points(walls, at));
-            wall = wall + weigh(simd, kernel, four) * mass;
+            wall = wall + weigh(simd, kernel, four) * numbers(simd, &walls.mass, at);
         }
         *slot = laws.mass * (at_zero + fluid.total()) + wall.total();
     }
@@ -83,19 +118,24 @@ fn points<'a>(list: &'a [Point], at: &[u32]) -> [&'a Point; LANES] {
     [0, 1, 2, 3].map(|l| &list[at[l] as usize])
 }
 
+#[inline(always)]
+fn numbers<S: Simd>(simd: S, list: &[f64], at: &[u32]) -> Four<S> {
+    Four::new(simd, [0, 1, 2, 3].map(|l| list[at[l] as usize]))
+}
+
 /// Accelerations by pressure and viscosity (m/s²), without gravity, into `a`.
 ///
-/// `x` carries P = p/ρ² and `w`, the effective velocities, carry ρ.
+/// `x` and the positions of `walls` carry P = p/ρ², and `w`, the effective velocities, carry ρ.
 pub(crate) fn accelerations(
     laws: &Laws,
     x: &[Point],
     w: &[Point],
-    walls: &Walls,
+    walls: &WallState,
     neighbours: &mut Neighbours,
     a: &mut [Point],
 ) {
     par::blocks(&mut neighbours.blocks, a, BLOCK, |b, block, a| {
-        let (walls, first) = (walls.points(), b * BLOCK);
+        let first = b * BLOCK;
         lanes::run(Accelerations { laws, x, w, walls, first, block, a });
     });
 }
@@ -105,7 +145,7 @@ struct Accelerations<'a> {
     laws: &'a Laws,
     x: &'a [Point],
     w: &'a [Point],
-    walls: &'a [Point],
+    walls: &'a WallState,
     first: usize,
     block: &'a Block,
     a: &'a mut [Point],
@@ -135,9 +175,10 @@ fn accelerations_of_block<S: Simd>(simd: S, task: Accelerations<'_>) {
         }
         let (active, slopes) = block.wall.active(k);
         for (at, f) in active.chunks_exact(LANES).zip(slopes.chunks_exact(LANES)) {
-            let [x0, x1, x2, mass] = transpose(simd, points(walls, at));
+            let [x0, x1, x2, term] = transpose(simd, points(&walls.x, at));
+            let mass = numbers(simd, &walls.mass, at);
             let slope = Four::new(simd, [f[0], f[1], f[2], f[3]]);
-            let by = laws.by_wall(&here, &[x0, x1, x2], mass, slope);
+            let by = laws.by_wall(&here, &[x0, x1, x2], term, mass, slope);
             sum = [sum[0] + by[0], sum[1] + by[1], sum[2] + by[2]];
         }
         *slot = [sum[0].total(), sum[1].total(), sum[2].total(), 0.0];

@@ -28,7 +28,7 @@ pub struct Particle {
 pub struct Energy {
     /// Of motion, by momenta (J).
     pub kinetic: f64,
-    /// Of compression (J).
+    /// Of compression, also of the walls (J).
     pub internal: f64,
     /// Of gravity, from the origin up (J).
     pub potential: f64,
@@ -137,9 +137,11 @@ impl<R> Fluid<R> {
             sum.potential -= self.settings.gravity.dot(&p.position);
         }
         let m = self.laws.mass;
+        let walls = self.touched.density.iter().zip(&self.touched.mass);
+        let of_walls: f64 = walls.map(|(&density, mass)| mass * self.laws.tait.energy(density)).sum();
         Energy {
             kinetic: m * sum.kinetic,
-            internal: m * sum.internal,
+            internal: m * sum.internal + of_walls,
             potential: m * sum.potential,
         }
     }

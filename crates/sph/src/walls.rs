@@ -1,4 +1,5 @@
-//! Walls of particles that do not move (Akinci2012): boxes and triangle meshes, two layers thick.
+//! Walls of particles that do not move (Crespo2007, Akinci2012): boxes and triangle meshes, two layers
+//! thick.
 //!
 //! One layer leaks. Two fill the support of a particle that touches the wall, so that fluid at rest
 //! goes on into the wall as if it were fluid, and what presses in is still pushed out.
@@ -29,8 +30,13 @@ impl Open {
 /// Particles of walls, each with the mass of fluid that it stands for.
 #[derive(Clone, Debug, Default)]
 pub struct Walls {
-    /// Position (m) and mass ψ (kg), sorted by the cells of the grid once prepared.
+    /// Positions (m) and volumes (m³), 0 where it is not known yet. Sorted by the cells of the grid once
+    /// prepared.
     points: Vec<Point>,
+    /// Masses (kg).
+    masses: Vec<f64>,
+    /// Densities without any fluid (kg/m³), at most the rest density.
+    own: Vec<f64>,
     grid: Grid,
     columns: Columns,
 }
@@ -58,6 +64,7 @@ impl Walls {
         }
         let around = |k: usize| (n[k] + 2 * LAYERS) as f64;
         check_count(around(0) * around(1) * around(2) - n.map(|n| n as f64).iter().product::<f64>())?;
+        let volume = (0..3).map(|k| size[k] / n[k] as f64).product();
         let range = |k: usize| {
             let low = if open.low[k] { 0 } else { -LAYERS };
             low..n[k] + if open.high[k] { 0 } else { LAYERS }
@@ -68,7 +75,7 @@ impl Walls {
             for y in range(1) {
                 let row_inside = is_inside(1, y) && is_inside(2, z);
                 for x in range(0).filter(|&x| !(row_inside && is_inside(0, x))) {
-                    self.points.push([place(0, x), place(1, y), place(2, z), 0.0]);
+                    self.points.push([place(0, x), place(1, y), place(2, z), volume]);
                 }
             }
         }
@@ -125,28 +132,33 @@ impl Walls {
         self.points.iter().map(|p| Vector3::new(p[0], p[1], p[2]))
     }
 
-    /// Sorts the particles into cells of length `reach` (m) and gives each its mass: the rest density
-    /// times the volume that it fills among its neighbours, `factor` / Σ W (Akinci2012 Eq. (5)).
-    pub(crate) fn prepare(&mut self, kernel: &CubicSpline, rest_density: f64, factor: f64, reach: f64) {
+    /// Sorts the particles into cells, for looking `reach` (m) around, and gives each its mass: the
+    /// density `full` (kg/m³) of fluid that would just have the rest density without gaps, times its
+    /// volume, which for meshes is `factor` / Σ W (Akinci2012 Eq. (5)).
+    pub(crate) fn prepare(
+        &mut self,
+        kernel: &CubicSpline,
+        (full, rest_density): (f64, f64),
+        factor: f64,
+        reach: f64,
+    ) {
         let mut order = Vec::new();
         self.grid.build(&self.points, reach, &mut order);
         self.points = order.iter().map(|&i| self.points[i as usize]).collect();
         self.columns.fill(&self.points);
-        let masses: Vec<f64> = self
-            .points
-            .iter()
-            .map(|p| {
-                let mut sum = 0.0;
-                for q in self.grid.rows(p).into_iter().flat_map(|range| &self.points[range]) {
-                    let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-                    sum += kernel.value(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-                }
-                rest_density * factor / sum
-            })
-            .collect();
-        for (p, mass) in self.points.iter_mut().zip(masses) {
-            p[3] = mass;
-        }
+        let sum = |p: &Point, weight: &dyn Fn(usize) -> f64| -> f64 {
+            let near = self.grid.rows(p).into_iter().flatten();
+            let value = |q: &Point| {
+                let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+                kernel.value(d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
+            };
+            near.map(|j| weight(j) * value(&self.points[j])).sum()
+        };
+        let volume = |p: &Point| if p[3] > 0.0 { p[3] } else { factor / sum(p, &|_| 1.0) };
+        let masses: Vec<f64> = self.points.iter().map(|p| full * volume(p)).collect();
+        let own = |p: &Point| sum(p, &|j| masses[j]).min(rest_density);
+        self.own = self.points.iter().map(own).collect();
+        self.masses = masses;
     }
 
     /// The cells of the particles.
@@ -158,10 +170,49 @@ impl Walls {
     pub(crate) fn columns(&self) -> &Columns {
         &self.columns
     }
+}
 
-    /// Positions and masses.
-    pub(crate) fn points(&self) -> &[Point] {
-        &self.points
+/// The particles of walls that fluid may touch until neighbours are listed again.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct WallState {
+    /// Position (m) and P = p/ρ² as the accelerations have it.
+    pub(crate) x: Vec<Point>,
+    /// Mass (kg).
+    pub(crate) mass: Vec<f64>,
+    /// Density without and with fluid (kg/m³).
+    pub(crate) own: Vec<f64>,
+    pub(crate) density: Vec<f64>,
+    /// For each particle of the walls where it is here, if `is_here`.
+    place: Vec<u32>,
+}
+
+/// Not in a [`WallState`].
+const NOWHERE: u32 = u32::MAX;
+
+impl WallState {
+    /// Starts anew, with nothing of these walls.
+    pub(crate) fn clear(&mut self, walls: &Walls) {
+        self.x.clear();
+        self.mass.clear();
+        self.own.clear();
+        self.density.clear();
+        self.place.clear();
+        self.place.resize(walls.points.len(), NOWHERE);
+    }
+
+    /// Where particle `j` of the walls is; it is added if need be.
+    pub(crate) fn place_of(&mut self, walls: &Walls, j: u32) -> u32 {
+        let place = &mut self.place[j as usize];
+        if *place == NOWHERE {
+            let j = j as usize;
+            *place = self.x.len() as u32;
+            let [x, y, z, _] = walls.points[j];
+            self.x.push([x, y, z, 0.0]);
+            self.mass.push(walls.masses[j]);
+            self.own.push(walls.own[j]);
+            self.density.push(0.0);
+        }
+        *place
     }
 }
 

@@ -31,7 +31,8 @@ fn front_moves_as_measured() {
     let basin = Bounds::new(Vector3::zeros(), Vector3::new(5.0 * width, 4.0 * spacing, 1.0));
     let mut walls = Walls::none();
     walls.add_box(&basin, Open::TOP, spacing).unwrap();
-    let settings = FluidSettings::water(spacing, 2.0 * width, basin.grown(1.0));
+    let water = FluidSettings::water(spacing, 2.0 * width, basin.grown(1.0));
+    let settings = FluidSettings { wall_viscosity: 0.0, ..water };
     let x = scenes::block([wide, 4, high], Vector3::zeros(), spacing, 0);
     let mut fluid = Fluid::new(settings, walls, &x, &vec![Vector3::zeros(); x.len()]).unwrap();
     let unit = (width / (2.0 * 9.81)).sqrt();
