@@ -41,7 +41,7 @@ pub struct Fluid<R = ()> {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
     moved: Moved,
-    changes: Changes,
+    pub(crate) changes: Changes,
     order: Vec<u32>,
     spare: Spare,
 }
@@ -255,11 +255,23 @@ impl<R: Restraint> Fluid<R> {
 
     /// Sorts the particles and lists their neighbours.
     fn list_neighbours(&mut self) {
-        let reach = self.laws.kernel.support() + self.settings.skin * self.settings.spacing;
-        self.neighbours.sort(&self.state.x, reach, &mut self.scratch.order);
+        self.neighbours.sort(&self.state.x, self.reach(), &mut self.scratch.order);
         self.state.sort(&self.scratch.order, &mut self.scratch.spare);
-        self.neighbours.list(&self.state.x, &self.walls, reach, &mut self.touched);
         self.listed.clone_from(&self.state.x);
+        let reach = self.reach();
+        self.neighbours.list(&self.listed, &self.walls, reach, &mut self.touched);
+    }
+
+    /// Lists neighbours again as they were.
+    pub(crate) fn list_around_listed(&mut self) {
+        let reach = self.reach();
+        self.neighbours.sort(&self.listed, reach, &mut self.scratch.order);
+        self.neighbours.list(&self.listed, &self.walls, reach, &mut self.touched);
+    }
+
+    /// How far from a particle others are listed (m).
+    fn reach(&self) -> f64 {
+        self.laws.kernel.support() + self.settings.skin * self.settings.spacing
     }
 
     /// Densities, pressures and accelerations by what the step has changed. Returns false if that is
@@ -270,7 +282,7 @@ impl<R: Restraint> Fluid<R> {
         let (moved, changes) = (&self.scratch.moved, &mut self.scratch.changes);
         // Nothing held is nothing gained: the bits are then those of a fluid without a policy.
         let most_movers = settings.sweep_above * n as f64;
-        if !moved.any_held || moved.movers.len() as f64 > most_movers || !changes.may_try(n) {
+        if !moved.any_held || moved.movers.len() as f64 >= most_movers || !changes.may_try(n) {
             return false;
         }
         let update = Update {
@@ -309,8 +321,14 @@ impl<R: Restraint> Fluid<R> {
                 a[k] += gravity[k];
             }
         }
-        if self.restraint.is_some() {
-            self.scratch.changes.evaluated_all(&self.state, &self.touched);
+        if let Some((_, settings)) = &self.restraint {
+            // While most particles move the next step will not look at changes either.
+            let n_movers = self.scratch.moved.movers.len() as f64;
+            if n_movers < settings.sweep_above * self.state.len() as f64 {
+                self.scratch.changes.evaluated_all(&self.state, &self.touched);
+            } else {
+                self.scratch.changes.forget();
+            }
         }
     }
 }

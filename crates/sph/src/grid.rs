@@ -48,6 +48,8 @@ pub(crate) struct Grid {
     start: Vec<u32>,
     /// Cell of each point, in the old order.
     cells: Vec<u32>,
+    /// For every cell whether a point may be within the reach of it, once asked for.
+    near: Vec<bool>,
 }
 
 impl Grid {
@@ -90,6 +92,36 @@ impl Grid {
             self.start[c] = self.start[c - 1];
         }
         self.start[0] = 0;
+    }
+
+    /// Prepares [`Grid::may_be_near`]; for points that stay where they are.
+    pub(crate) fn mark_near(&mut self) {
+        self.near = vec![false; self.start.len().saturating_sub(1)];
+        let wide = CELLS_PER_REACH as i64 + 1;
+        for (c, pair) in (0..).zip(self.start.windows(2)) {
+            if pair[0] == pair[1] {
+                continue;
+            }
+            let at = [c % self.dims[0], c / self.dims[0] % self.dims[1], c / self.dims[0] / self.dims[1]];
+            let range = |k: usize, by: i64| (at[k] - by).max(0)..(at[k] + by + 1).min(self.dims[k]);
+            for z in range(2, 1) {
+                for y in range(1, 1) {
+                    let row = (z * self.dims[1] + y) * self.dims[0];
+                    let x = range(0, wide);
+                    self.near[(row + x.start) as usize..(row + x.end) as usize].fill(true);
+                }
+            }
+        }
+    }
+
+    /// False only if no point is within the reach of `p`.
+    #[inline(always)]
+    pub(crate) fn may_be_near(&self, p: &Point) -> bool {
+        let at = self.coordinates(p);
+        if (0..3).any(|k| at[k] < 0 || at[k] >= self.dims[k]) {
+            return !self.near.is_empty();
+        }
+        self.near[((at[2] * self.dims[1] + at[1]) * self.dims[0] + at[0]) as usize]
     }
 
     /// Fills `cells`, and `start` with the number of points in the cells before each.
@@ -176,6 +208,9 @@ mod tests {
                 prop_assert!(!found[i], "point {} is found twice", i);
                 found[i] = true;
             }
+            grid.mark_near();
+            let near = points.iter().any(|p| squared(p, &probe) < cell * cell);
+            prop_assert!(grid.may_be_near(&probe) || !near);
             for (i, p) in points.iter().enumerate() {
                 prop_assert!(found[i] || squared(p, &probe) > cell * cell);
             }

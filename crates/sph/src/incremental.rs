@@ -309,6 +309,11 @@ impl Changes {
         self.wall_terms.extend(walls.x.iter().map(|x| x[3]));
     }
 
+    /// What was computed is not known here.
+    pub(crate) fn forget(&mut self) {
+        self.x.clear();
+    }
+
     /// True if it is time for a try: after one that was in vain the next ones are too, mostly. Not
     /// before everything was computed once.
     pub(crate) fn may_try(&mut self, n_particles: usize) -> bool {
@@ -316,6 +321,11 @@ impl Changes {
             self.wait -= 1;
             return false;
         }
+        self.is_known(n_particles)
+    }
+
+    /// True if what was computed is known here.
+    pub(crate) fn is_known(&self, n_particles: usize) -> bool {
         self.x.len() == n_particles
     }
 

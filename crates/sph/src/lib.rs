@@ -1,6 +1,7 @@
 //! Weakly compressible SPH fluid.
 #![forbid(unsafe_code)]
 
+mod checkpoint;
 mod fluid;
 mod grid;
 mod incremental;
@@ -21,6 +22,7 @@ mod sweep;
 mod view;
 mod walls;
 
+pub use checkpoint::Checkpoint;
 pub use fluid::Fluid;
 pub use kernel::CubicSpline;
 pub use report::StepReport;

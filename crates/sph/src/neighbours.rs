@@ -74,6 +74,11 @@ impl Lists {
         self.start.push(n as u32);
     }
 
+    /// Adds a particle without any candidate.
+    fn push_alone(&mut self) {
+        self.start.push(*self.start.last().expect("cleared before"));
+    }
+
     /// Makes room for the active candidates.
     fn finish(&mut self) {
         let n_particles = self.start.len() - 1;
@@ -151,7 +156,11 @@ impl WithSimd for Listing<'_> {
         wall.clear();
         for (i, p) in (self.first..).zip(self.x) {
             fluid.push(self.grid, self.columns, p, self.reach, i);
-            wall.push(self.walls.grid(), self.walls.columns(), p, self.reach, usize::MAX);
+            if self.walls.grid().may_be_near(p) {
+                wall.push(self.walls.grid(), self.walls.columns(), p, self.reach, usize::MAX);
+            } else {
+                wall.push_alone();
+            }
         }
         fluid.finish();
         wall.finish();

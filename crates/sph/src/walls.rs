@@ -146,6 +146,7 @@ impl Walls {
         self.grid.build(&self.points, reach, &mut order);
         self.points = order.iter().map(|&i| self.points[i as usize]).collect();
         self.columns.fill(&self.points);
+        self.grid.mark_near();
         let sum = |p: &Point, weight: &dyn Fn(usize) -> f64| -> f64 {
             let near = self.grid.rows(p).into_iter().flatten();
             let value = |q: &Point| {
