@@ -70,7 +70,7 @@ impl Emitter {
         mut push: impl FnMut(Vector3<f64>, Vector3<f64>),
     ) {
         let period = spacing / self.speed;
-        let n = self.half_size.map(|half| ((2.0 * half / spacing).floor() as i64).max(1));
+        let n = self.half_size.map(|half| ((2.0 * half / spacing + 1e-9).floor() as i64).max(1));
         let velocity = self.direction * self.speed;
         loop {
             let leaves = self.from + self.n_layers as f64 * period;

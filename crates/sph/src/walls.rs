@@ -108,13 +108,13 @@ impl Walls {
         }
         for layer in 0..LAYERS {
             let depth = (layer as f64 + 0.5) * spacing;
-            let mut samples = Samples::new(0.75 * spacing);
+            let mut samples = Samples::new(0.5 * spacing);
             for c in triangles {
                 let [a, b, c] = c.map(|corner| corners[corner as usize]);
                 let normal = (b - a).cross(&(c - a));
                 if normal.norm() > 0.0 {
                     let back = normal.normalize() * depth;
-                    samples.cover([a - back, b - back, c - back], spacing / 3.0)?;
+                    samples.cover([a - back, b - back, c - back], spacing / 5.0)?;
                 }
             }
             self.points.extend(samples.points.iter().map(|x| [x.x, x.y, x.z, 0.0]));
