@@ -102,9 +102,8 @@ pub fn permanent_flow(seed: u64) -> Result<Scene, FluidError> {
     let settings = FluidSettings::water(spacing, size[2], inside.grown(0.2));
     let positions = block(n, Vector3::zeros(), spacing, seed);
     let mut fluid = at_rest(settings, walls, &positions)?;
-    let nozzle = Vector3::new(3.0 * spacing, 0.5 * size[1], 1.5 * size[2]);
-    let down = Vector3::new(0.5, 0.0, -1.0);
-    fluid.add_emitter(Emitter::new(nozzle, down, [2.0 * spacing, 1.5 * spacing], 1.0)?)?;
+    let nozzle = Vector3::new(2.0 * spacing, 0.5 * size[1], size[2] + 2.0 * spacing);
+    fluid.add_emitter(Emitter::new(nozzle, Vector3::x(), [2.0 * spacing, spacing], 0.5)?)?;
     // The skimmer takes what stands higher than the trough was full.
     let low = Vector3::new(size[0] - 3.0 * spacing, 0.0, size[2]);
     fluid.add_sink(Sink(Bounds::new(low, inside.max.add_scalar(0.1))));
