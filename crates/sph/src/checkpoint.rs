@@ -30,8 +30,8 @@ pub struct Checkpoint {
     pub listed: Vec<[f64; 4]>,
     /// p/ρ² (Pa m⁶/kg²) and densities (kg/m³) of the particles of walls that fluid may touch.
     pub walls: Vec<[f64; 2]>,
-    /// Greatest speed (m/s) and acceleration (m/s²), for the next step's bound.
-    pub greatest: [f64; 2],
+    /// Greatest speed (m/s), acceleration (m/s²) and way from where neighbours were listed (m).
+    pub greatest: [f64; 3],
     /// Layers that each nozzle has let out.
     pub layers: Vec<u64>,
     /// True if the next step may begin from what this one has computed; steps until the next try to do
@@ -55,7 +55,7 @@ impl<R: Restraint> Fluid<R> {
             density: state.density.clone(),
             listed: self.listed.clone(),
             walls: walls.collect(),
-            greatest: [self.fastest, self.hardest],
+            greatest: [self.fastest, self.hardest, self.farthest],
             layers: self.emitters.iter().map(|emitter| emitter.n_layers).collect(),
             incremental: (changes.is_known(state.len()), changes.wait, changes.pause),
         }
@@ -120,7 +120,7 @@ impl<R: Restraint> Fluid<R> {
         {
             (x[3], *density) = (term, of_wall);
         }
-        [self.fastest, self.hardest] = from.greatest;
+        [self.fastest, self.hardest, self.farthest] = from.greatest;
         for (emitter, &n_layers) in self.emitters.iter_mut().zip(&from.layers) {
             emitter.n_layers = n_layers;
         }

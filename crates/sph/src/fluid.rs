@@ -34,6 +34,8 @@ pub struct Fluid<R = ()> {
     pub(crate) next_id: u64,
     pub(crate) fastest: f64,
     pub(crate) hardest: f64,
+    /// At least as far as any particle is from where it was listed (m).
+    pub(crate) farthest: f64,
     pub(crate) scratch: Scratch,
 }
 
@@ -91,6 +93,7 @@ impl Fluid {
             time: 0.0,
             fastest: velocities.iter().map(Vector3::norm).fold(0.0, f64::max),
             hardest: 0.0,
+            farthest: 0.0,
             scratch: Scratch::default(),
         };
         fluid.list_neighbours();
@@ -136,6 +139,7 @@ impl<R: Restraint> Fluid<R> {
             next_id: self.next_id,
             fastest: self.fastest,
             hardest: self.hardest,
+            farthest: self.farthest,
             scratch: self.scratch,
         }
     }
@@ -166,17 +170,22 @@ impl<R: Restraint> Fluid<R> {
         if dt > bound * (1.0 + 1e-12) {
             return Err(FluidError::StepTooLong { step: dt, bound });
         }
-        self.kick_and_drift(dt)?;
-        self.time += dt;
         let n = self.state.len();
         let mut report = StepReport { steps: 1, particles: n as u64, ..StepReport::default() };
-        report.moved = if self.restraint.is_some() { self.scratch.moved.movers.len() } else { n } as u64;
-        let changed = self.emit_and_drain(&mut report);
+        // As far as a particle may be from where it was listed after this step.
+        let reach = self.farthest + (self.fastest + self.hardest * dt) * dt;
         let half_skin = 0.5 * self.settings.skin * self.settings.spacing;
-        if changed || self.scratch.moved.farthest_squared > half_skin * half_skin {
+        if reach > half_skin {
+            self.list_in_between();
+            report.listings += 1;
+        }
+        self.kick_and_drift(dt)?;
+        self.time += dt;
+        report.moved = if self.restraint.is_some() { self.scratch.moved.movers.len() } else { n } as u64;
+        if self.emit_and_drain(&mut report) || self.farthest > half_skin {
             self.list_neighbours();
             self.evaluate_all();
-            report.listings = 1;
+            report.listings += 1;
             report.sweeps = 1;
         } else if !self.evaluate_changes(&mut report) {
             self.evaluate_all();
@@ -230,6 +239,7 @@ impl<R: Restraint> Fluid<R> {
             Some(_) => moved.apply_restrained(state),
         }
         self.fastest = moved.fastest;
+        self.farthest = self.farthest.max(moved.farthest_squared.sqrt());
         Ok(())
     }
 
@@ -258,8 +268,18 @@ impl<R: Restraint> Fluid<R> {
         self.neighbours.sort(&self.state.x, self.reach(), &mut self.scratch.order);
         self.state.sort(&self.scratch.order, &mut self.scratch.spare);
         self.listed.clone_from(&self.state.x);
+        self.farthest = 0.0;
         let reach = self.reach();
         self.neighbours.list(&self.listed, &self.walls, reach, &mut self.touched);
+    }
+
+    /// The same between two steps: what was computed stays good.
+    fn list_in_between(&mut self) {
+        let known = self.scratch.changes.is_known(self.state.len());
+        self.list_neighbours();
+        if known {
+            self.scratch.changes.evaluated_all(&self.state, &self.touched);
+        }
     }
 
     /// Lists neighbours again as they were.

@@ -216,10 +216,10 @@ impl Neighbours {
             let (first, x) = (b * BLOCK, &x[b * BLOCK..b * BLOCK + part.len()]);
             lanes::run(Listing { grid, columns, walls, first, x, reach, block });
         });
-        touched.clear(walls);
+        let before = touched.restart(walls);
         for block in &mut self.blocks {
             for j in block.wall.all_mut() {
-                *j = touched.place_of(walls, *j);
+                *j = touched.place_of(walls, &before, *j);
             }
         }
         self.wall_blocks.resize_with(touched.x.len().div_ceil(BLOCK), Lists::default);

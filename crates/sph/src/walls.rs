@@ -183,7 +183,7 @@ pub(crate) struct WallState {
     /// Density without and with fluid (kg/m³).
     pub(crate) own: Vec<f64>,
     pub(crate) density: Vec<f64>,
-    /// For each particle of the walls where it is here, if `is_here`.
+    /// For each particle of the walls where it is here, or `NOWHERE`.
     place: Vec<u32>,
 }
 
@@ -191,29 +191,27 @@ pub(crate) struct WallState {
 const NOWHERE: u32 = u32::MAX;
 
 impl WallState {
-    /// Starts anew, with nothing of these walls.
-    pub(crate) fn clear(&mut self, walls: &Walls) {
-        self.x.clear();
-        self.mass.clear();
-        self.own.clear();
-        self.density.clear();
-        self.place.clear();
-        self.place.resize(walls.points.len(), NOWHERE);
+    /// Starts anew, with nothing of these walls. Returns what there was.
+    pub(crate) fn restart(&mut self, walls: &Walls) -> WallState {
+        let place = vec![NOWHERE; walls.points.len()];
+        std::mem::replace(self, WallState { place, ..WallState::default() })
     }
 
-    /// Where particle `j` of the walls is; it is added if need be.
-    pub(crate) fn place_of(&mut self, walls: &Walls, j: u32) -> u32 {
-        let place = &mut self.place[j as usize];
-        if *place == NOWHERE {
-            let j = j as usize;
-            *place = self.x.len() as u32;
-            let [x, y, z, _] = walls.points[j];
-            self.x.push([x, y, z, 0.0]);
-            self.mass.push(walls.masses[j]);
-            self.own.push(walls.own[j]);
-            self.density.push(0.0);
+    /// Where particle `j` of the walls is; if need be it is added, as it was `before`.
+    pub(crate) fn place_of(&mut self, walls: &Walls, before: &WallState, j: u32) -> u32 {
+        let at = j as usize;
+        if self.place[at] == NOWHERE {
+            self.place[at] = self.x.len() as u32;
+            let [x, y, z, _] = walls.points[at];
+            let was = before.place.get(at).map_or(NOWHERE, |&place| place) as usize;
+            // What is new here has no fluid within its support yet, and so no pressure.
+            let term = before.x.get(was).map_or(0.0, |x| x[3]);
+            self.x.push([x, y, z, term]);
+            self.mass.push(walls.masses[at]);
+            self.own.push(walls.own[at]);
+            self.density.push(before.density.get(was).copied().unwrap_or(walls.own[at]));
         }
-        *place
+        self.place[at]
     }
 }
 
