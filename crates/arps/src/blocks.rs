@@ -1,5 +1,6 @@
 //! Symmetric matrices of 3 × 3 blocks, one row of blocks per particle.
 
+use crate::error::StateError;
 use crate::{Matrix3, Vector3};
 use nalgebra::DMatrix;
 
@@ -35,12 +36,17 @@ impl SparseBlocks {
     /// A matrix of zeros for n particles, of which these pairs interact. The order of pairs does not
     /// matter, nor do repetitions.
     ///
-    /// # Panics
-    /// If a pair names a particle that is not there.
-    pub fn new(n: usize, pairs: impl IntoIterator<Item = [usize; 2]>) -> SparseBlocks {
+    /// # Errors
+    /// A pair that names a particle that is not there.
+    pub fn new(
+        n: usize,
+        pairs: impl IntoIterator<Item = [usize; 2]>,
+    ) -> Result<SparseBlocks, StateError> {
         let mut rows = vec![Vec::new(); n];
-        for [i, j] in pairs {
-            assert!(i < n && j < n, "the pair {i}, {j} is not among {n} particles");
+        for pair @ [i, j] in pairs {
+            if i >= n || j >= n {
+                return Err(StateError::Pair { pair, n });
+            }
             if i != j {
                 rows[i].push(j);
                 rows[j].push(i);
@@ -55,7 +61,7 @@ impl SparseBlocks {
             start.push(column.len());
         }
         let block = vec![Matrix3::zeros(); column.len()];
-        SparseBlocks { diagonal: vec![Matrix3::zeros(); n], start, column, block }
+        Ok(SparseBlocks { diagonal: vec![Matrix3::zeros(); n], start, column, block })
     }
 
     /// Sets every block to zero.

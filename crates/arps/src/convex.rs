@@ -13,6 +13,7 @@
 
 use crate::blocks::Blocks;
 use crate::error::StepError;
+use crate::held::{Held, Motion, radial_and_across};
 use crate::linear::MoverSystem;
 use crate::{Conjugate, Matrix3, Vector3};
 
@@ -34,7 +35,7 @@ pub struct ConvexProblem<'a, B> {
 /// How a convex problem was solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ConvexReport {
-    /// Rounds of sweeps and Newton step.
+    /// Rounds of Newton's method.
     pub n_rounds: usize,
     /// Linear systems solved.
     pub n_solves: usize,
@@ -46,12 +47,20 @@ pub struct ConvexReport {
     pub converged: bool,
 }
 
-/// Solves convex problems: proximal sweeps find the movers, Newton's method on the movers does the
-/// rest. Keeps its buffers.
+/// Solves convex problems by a semi-smooth Newton method on the dual, which has no kink:
+///
+/// ```text
+/// D(w) = Σ T(b − C w) + ½ wᵀ L w,   gradient L (w − h T′(p)) with p = b − C w
+/// (1 + h² G L) Δw = h T′(p) − w,    G = T″(p)
+/// ```
+///
+/// D is convex and once differentiable, so the method converges from anywhere with a line search, and
+/// at the minimum w are the displacements. What rests has no row in the linear system: G is zero
+/// there. Keeps its buffers.
 #[derive(Clone, Debug, Default)]
 pub struct ConvexSolver {
     p: Vec<Vector3>,
-    bound: Vec<f64>,
+    size: Vec<f64>,
     place: Vec<usize>,
     movers: Vec<usize>,
     inertia: Vec<Matrix3>,
@@ -61,9 +70,6 @@ pub struct ConvexSolver {
     c_change: Vec<Vector3>,
 }
 
-/// Sweeps in front of each Newton step. Without them, and without the stop at zero, the set of movers
-/// cycles once h² k/m passes 10.
-const N_SWEEPS: usize = 2;
 const MAX_ROUNDS: usize = 60;
 
 impl ConvexSolver {
@@ -73,155 +79,130 @@ impl ConvexSolver {
     ///
     /// # Errors
     /// What `solve` says.
+    ///
+    /// # Panics
+    /// If the lists of the problem and `d` have different lengths.
     pub fn solve<B: Blocks>(
         &mut self,
         problem: &ConvexProblem<'_, B>,
         d: &mut [Vector3],
         mut solve: impl FnMut(&MoverSystem<'_, B>, &mut [Vector3]) -> Result<(), StepError>,
     ) -> Result<ConvexReport, StepError> {
-        let n = d.len();
-        let all_free = problem.conjugates.iter().all(|c| c.held().is_free());
         let mut report = ConvexReport::default();
-        self.bound.clear();
-        self.bound.extend((0..n).map(|i| problem.h * greatest(&problem.stiffness.diagonal(i))));
         loop {
-            // Without restraint the problem is linear, and a step is one solve as in the plain scheme.
-            if !all_free {
-                for _ in 0..N_SWEEPS {
-                    self.sweep(problem, d);
-                }
-            }
-            self.find_movers(problem, d, all_free);
-            let (residual, converged) = self.residual(problem, d);
-            (report.residual, report.converged) = (residual, converged);
-            if converged || report.n_rounds == MAX_ROUNDS {
+            self.momenta(problem, d);
+            (report.residual, report.converged) = self.residual(problem, d);
+            if report.converged || report.n_rounds == MAX_ROUNDS {
                 return Ok(report);
             }
             report.n_rounds += 1;
-            if self.movers.is_empty() {
-                continue;
+            self.find_movers(problem, d);
+            if !self.movers.is_empty() {
+                let system = MoverSystem {
+                    movers: &self.movers,
+                    inertia: &self.inertia,
+                    stiffness: problem.stiffness,
+                    h: problem.h,
+                    rhs: &self.rhs,
+                    place: &self.place,
+                };
+                self.step.resize(self.movers.len(), Vector3::zeros());
+                solve(&system, &mut self.step)?;
+                report.n_solves += 1;
+                report.n_unknowns += self.movers.len();
+                for (a, &i) in self.movers.iter().enumerate() {
+                    self.change[i] = self.step[a];
+                }
             }
-            let system = MoverSystem {
-                movers: &self.movers,
-                inertia: &self.inertia,
-                stiffness: problem.stiffness,
-                h: problem.h,
-                rhs: &self.rhs,
-                place: &self.place,
-            };
-            self.step.resize(self.movers.len(), Vector3::zeros());
-            solve(&system, &mut self.step)?;
-            report.n_solves += 1;
-            report.n_unknowns += self.movers.len();
             self.advance(problem, d);
-            let (residual, converged) = self.residual(problem, d);
-            (report.residual, report.converged) = (residual, converged);
-            if converged {
-                return Ok(report);
-            }
         }
     }
 
-    /// One proximal Gauss–Seidel sweep there and back: every particle in turn goes to the minimum of
-    /// the problem in which its own stiffness is replaced by a bound of it.
-    fn sweep<B: Blocks>(&self, problem: &ConvexProblem<'_, B>, d: &mut [Vector3]) {
-        let n = d.len();
-        for i in (0..n).chain((0..n).rev()) {
-            let p = problem.drive[i] - problem.h * problem.stiffness.row_times(i, d);
-            let pulled = p + self.bound[i] * d[i];
-            d[i] = problem.conjugates[i].proximal(&pulled, self.bound[i], problem.h);
-        }
-    }
-
-    /// Lists the particles that move, with their effective masses and residuals.
-    fn find_movers<B: Blocks>(&mut self, problem: &ConvexProblem<'_, B>, d: &[Vector3], all: bool) {
-        self.movers.clear();
-        self.inertia.clear();
-        self.rhs.clear();
-        self.place.clear();
-        self.place.resize(d.len(), usize::MAX);
-        for i in (0..d.len()).filter(|&i| all || d[i] != Vector3::zeros()) {
-            let (conjugate, v) = (&problem.conjugates[i], d[i] / problem.h);
-            let free = conjugate.held().is_free();
-            let mass = conjugate.held().mass();
-            let effective =
-                if free { Matrix3::identity() * mass } else { conjugate.effective_mass(&v) };
-            let p = problem.drive[i] - problem.h * problem.stiffness.row_times(i, d);
-            self.place[i] = self.movers.len();
-            self.movers.push(i);
-            self.inertia.push(effective / problem.h);
-            self.rhs.push(p - conjugate.momentum(&v));
+    /// Momenta at the end of the step for displacements, and the size of what they are summed from.
+    fn momenta<B: Blocks>(&mut self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) {
+        self.p.clear();
+        self.size.clear();
+        for i in 0..d.len() {
+            let own = problem.stiffness.diagonal(i) * d[i];
+            let (mut sum, mut size) = (own, own.abs().sum());
+            problem.stiffness.visit_row(i, |j, block| {
+                let part = block * d[j];
+                sum += part;
+                size += part.abs().sum();
+            });
+            self.p.push(problem.drive[i] - problem.h * sum);
+            self.size.push(problem.drive[i].abs().sum() + problem.h * size);
         }
     }
 
     /// Greatest error of momentum, and whether each is below the tolerance or rounding.
-    fn residual<B: Blocks>(
-        &mut self,
-        problem: &ConvexProblem<'_, B>,
-        d: &[Vector3],
-    ) -> (f64, bool) {
+    fn residual<B: Blocks>(&self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) -> (f64, bool) {
         let (mut worst, mut converged) = (0.0f64, true);
-        self.p.clear();
         for i in 0..d.len() {
-            let mut rounding = self.bound[i] * d[i].norm() + problem.drive[i].norm();
-            problem
-                .stiffness
-                .visit_row(i, |j, block| rounding += problem.h * block.norm() * d[j].norm());
-            let p = problem.drive[i] - problem.h * problem.stiffness.row_times(i, d);
-            self.p.push(p);
-            let error = momentum_error(&problem.conjugates[i], &p, &d[i], problem.h);
+            let error = momentum_error(&problem.conjugates[i], &self.p[i], &d[i], problem.h);
             worst = worst.max(error);
-            converged &= error <= problem.tolerance + 8.0 * f64::EPSILON * rounding;
+            converged &= error <= problem.tolerance + 8.0 * f64::EPSILON * self.size[i];
         }
         (worst, converged)
     }
 
-    /// Goes along the Newton step as far as the objective falls. A particle whose displacement would
-    /// turn round stops at zero, the kink.
-    fn advance<B: Blocks>(&mut self, problem: &ConvexProblem<'_, B>, d: &mut [Vector3]) {
-        let n = d.len();
+    /// Lists the particles that move with their effective masses, sets the change of those that rest,
+    /// which is to go back to where they were, and the right-hand side.
+    fn find_movers<B: Blocks>(&mut self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) {
+        self.movers.clear();
+        self.inertia.clear();
+        self.rhs.clear();
+        self.place.clear();
         self.change.clear();
-        self.change.resize(n, Vector3::zeros());
-        for stop in [true, false] {
-            for (a, &i) in self.movers.iter().enumerate() {
-                let turns = d[i].dot(&(d[i] + self.step[a])) <= 0.0;
-                let free = problem.conjugates[i].held().is_free();
-                self.change[i] = if stop && turns && !free { -d[i] } else { self.step[a] };
-            }
-            self.c_change.clear();
-            let row = |i: usize| problem.h * problem.stiffness.row_times(i, &self.change);
-            self.c_change.extend((0..n).map(row));
-            if self.slope(problem, d, 0.0) < 0.0 {
-                break;
+        for i in 0..d.len() {
+            let held = problem.conjugates[i].held();
+            if held.motion(&self.p[i]) == Motion::Rest {
+                self.place.push(usize::MAX);
+                self.change.push(-d[i]);
+            } else {
+                self.place.push(self.movers.len());
+                self.change.push(Vector3::zeros());
+                self.movers.push(i);
+                self.inertia.push(inertia(held, &self.p[i]) / problem.h);
             }
         }
+        for (a, &i) in self.movers.iter().enumerate() {
+            let v = problem.conjugates[i].held().velocity(&self.p[i]);
+            let mut back = Vector3::zeros();
+            problem.stiffness.visit_row(i, |j, block| back += block * self.change[j]);
+            self.rhs.push(self.inertia[a] * (problem.h * v - d[i]) - problem.h * back);
+        }
+    }
+
+    /// Goes along the change as far as the dual falls.
+    fn advance<B: Blocks>(&mut self, problem: &ConvexProblem<'_, B>, d: &mut [Vector3]) {
+        self.c_change.clear();
+        let row = |i: usize| problem.h * problem.stiffness.row_times(i, &self.change);
+        self.c_change.extend((0..d.len()).map(row));
         let share = self.line_search(problem, d);
-        for &i in &self.movers {
-            let to_zero = share == 1.0 && self.change[i] == -d[i];
-            d[i] = if to_zero { Vector3::zeros() } else { d[i] + share * self.change[i] };
+        for (d, change) in d.iter_mut().zip(&self.change) {
+            *d += share * change;
         }
     }
 
-    /// Derivative of the objective along the change, at a share of it from 0 to 1.
+    /// Derivative of h D along the change, at a share of it.
     fn slope<B: Blocks>(&self, problem: &ConvexProblem<'_, B>, d: &[Vector3], share: f64) -> f64 {
-        let along = |&i: &usize| {
-            let at = d[i] + share * self.change[i];
-            // On the way to zero the direction stays.
-            let at = if at == Vector3::zeros() { f64::MIN_POSITIVE.sqrt() * d[i] } else { at };
+        let along = |i: usize| {
             let p = self.p[i] - share * self.c_change[i];
-            (problem.conjugates[i].momentum(&(at / problem.h)) - p).dot(&self.change[i])
+            let v = problem.conjugates[i].held().velocity(&p);
+            (d[i] + share * self.change[i] - problem.h * v).dot(&self.c_change[i])
         };
-        self.movers.iter().map(along).sum()
+        (0..d.len()).map(along).sum()
     }
 
-    /// A share of the change at which the objective is least, nearly: its slope rises along the way
-    /// and is negative at the start, so wherever it is not positive the objective has only fallen.
-    /// Looks at slopes alone, since differences of the objective drown in rounding.
+    /// A share of the change at which the dual is least, nearly: its slope rises along the way and is
+    /// negative at the start, so wherever it is not positive the dual has only fallen. Looks at slopes
+    /// alone, since differences of the dual drown in rounding.
     fn line_search<B: Blocks>(&self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) -> f64 {
         let start = self.slope(problem, d, 0.0);
-        let flat = 1e-3 * start.abs();
+        let flat = 0.1 * start.abs();
         let (mut low, mut high) = ([0.0, start], [1.0, self.slope(problem, d, 1.0)]);
-        if high[1] <= flat {
+        if high[1] <= flat || start >= 0.0 {
             return 1.0;
         }
         for _ in 0..40 {
@@ -243,6 +224,18 @@ impl ConvexSolver {
     }
 }
 
+/// Effective mass G⁻¹ at a momentum that moves (kg).
+fn inertia(held: &Held, p: &Vector3) -> Matrix3 {
+    match held.motion(p) {
+        Motion::Full => Matrix3::from_diagonal_element(held.mass()),
+        _ => {
+            let r = p.norm();
+            let along = held.mass() / held.ddphi(r);
+            radial_and_across(&(p / r), along, held.mass() * r / held.dphi(r))
+        }
+    }
+}
+
 /// How far a momentum p (kg m/s) at the end of a step of h (s) is from one that goes with the
 /// displacement d (m).
 pub(crate) fn momentum_error(conjugate: &Conjugate, p: &Vector3, d: &Vector3, h: f64) -> f64 {
@@ -251,9 +244,4 @@ pub(crate) fn momentum_error(conjugate: &Conjugate, p: &Vector3, d: &Vector3, h:
     } else {
         (conjugate.momentum(&(d / h)) - p).norm()
     }
-}
-
-/// A bound of the eigenvalues of a symmetric block: the greatest sum over a row.
-fn greatest(block: &Matrix3) -> f64 {
-    (0..3).map(|i| block.row(i).abs().sum()).fold(0.0, f64::max)
 }

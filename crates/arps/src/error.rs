@@ -50,6 +50,12 @@ pub enum ThresholdError {
         /// The law.
         law: Law,
     },
+    /// A duration that is not a positive finite number.
+    #[error("the duration is {duration} s; it must be positive and finite")]
+    Duration {
+        /// The duration (s).
+        duration: f64,
+    },
     /// A mass that is not a positive finite number.
     #[error("the mass is {mass} kg; it must be positive and finite")]
     Mass {
@@ -91,6 +97,14 @@ pub enum StateError {
         /// Its mass (kg).
         mass: f64,
     },
+    /// A pair of particles of which one is not there.
+    #[error("the pair {pair:?} is not among {n} particles")]
+    Pair {
+        /// The pair.
+        pair: [usize; 2],
+        /// Number of particles.
+        n: usize,
+    },
     /// A position or velocity that is not finite.
     #[error("position or velocity of particle {particle} is not finite")]
     NotFinite {
@@ -109,6 +123,20 @@ pub enum StepError {
         what: &'static str,
         /// Its value (s).
         value: f64,
+    },
+    /// A tolerance that is not a positive number.
+    #[error("the tolerance is {value}; it must be positive")]
+    Tolerance {
+        /// Its value (1).
+        value: f64,
+    },
+    /// A stiffness matrix for another number of particles.
+    #[error("the stiffness matrix has {rows} rows of blocks for {particles} particles")]
+    Pattern {
+        /// Rows of blocks.
+        rows: usize,
+        /// Number of particles.
+        particles: usize,
     },
     /// The step led to a position or momentum that is not finite: a force that is not, or a step too
     /// long for the stiffness.

@@ -4,7 +4,7 @@ use crate::blocks::{Blocks, SparseBlocks};
 use crate::convex::{ConvexProblem, ConvexSolver, momentum_error};
 use crate::error::StepError;
 use crate::explicit::{bleeding_kick, check_time};
-use crate::held::{Held, Motion};
+use crate::held::Held;
 use crate::linear::MoverSystem;
 use crate::restraint::Restraint;
 use crate::{Conjugate, Law, Moved, Particles, Vector3};
@@ -24,6 +24,8 @@ pub struct Implicit<R> {
     conjugates: Vec<Conjugate>,
     now: Trial,
     next: Trial,
+    /// Momenta at the beginning of the step, after bleeding.
+    p: Vec<Vector3>,
     drive: Vec<Vector3>,
 }
 
@@ -68,6 +70,7 @@ impl<R: Restraint> Implicit<R> {
             conjugates: Vec::new(),
             now: Trial::default(),
             next: Trial::default(),
+            p: Vec::new(),
             drive: Vec::new(),
         }
     }
@@ -78,8 +81,7 @@ impl<R: Restraint> Implicit<R> {
     }
 
     /// Lets the momentum of resting particles decay with a time constant τ (s), as in
-    /// [`Explicit::with_bleeding`](crate::Explicit::with_bleeding): for those that rest at both ends
-    /// of a step.
+    /// [`Explicit::with_bleeding`](crate::Explicit::with_bleeding).
     ///
     /// # Errors
     /// A τ that is not positive and finite.
@@ -90,10 +92,17 @@ impl<R: Restraint> Implicit<R> {
     }
 
     /// Stops when the error of every momentum is below this share (1) of the greatest drive
-    /// ‖p + h f‖; 1e-10 if not set. What rounding allows is enough in any case.
-    pub fn with_tolerance(mut self, tolerance: f64) -> Implicit<R> {
+    /// ‖p + h f‖; 1e-10 if not set. What rounding allows is enough in any case. With 1e-6, and linear
+    /// systems solved to 1e-8, energy rises by nothing that counts; with 1e-3 by up to some 1e-4.
+    ///
+    /// # Errors
+    /// A tolerance that is not positive.
+    pub fn with_tolerance(mut self, tolerance: f64) -> Result<Implicit<R>, StepError> {
+        if tolerance.is_nan() || tolerance <= 0.0 {
+            return Err(StepError::Tolerance { value: tolerance });
+        }
         self.tolerance = tolerance;
-        self
+        Ok(self)
     }
 
     /// Makes a step of h (s). `evaluate` is given positions (m), adds forces (N) to a slice of zeros
@@ -101,7 +110,7 @@ impl<R: Restraint> Implicit<R> {
     /// and returns the potential energy (J). `solve` is as in [`ConvexSolver::solve`].
     ///
     /// # Errors
-    /// A step that is not positive and finite; a policy with a law that is not convex, or with
+    /// A step that is not positive and finite; a pattern of another size; a policy with a law that is not convex, or with
     /// [`Law::Exact`], whose conjugate has a second kink; a linear system that cannot be solved; a
     /// result that is not finite. The particles are then as they were.
     pub fn step(
@@ -112,21 +121,29 @@ impl<R: Restraint> Implicit<R> {
         mut solve: impl FnMut(&MoverSystem<'_, SparseBlocks>, &mut [Vector3]) -> Result<(), StepError>,
     ) -> Result<ImplicitReport, StepError> {
         check_time("the step", h)?;
-        self.hold(particles)?;
         let n = particles.len();
+        if self.stiffness.n_rows() != n {
+            return Err(StepError::Pattern { rows: self.stiffness.n_rows(), particles: n });
+        }
+        self.hold(particles)?;
         let mut report = ImplicitReport::default();
         self.now.d.clear();
         self.now.d.resize(n, Vector3::zeros());
         self.now.evaluate(&particles.x, &mut self.stiffness, &mut evaluate);
-        let mut objective = self.objective(&self.now, particles, h);
+        report.moved.bled = self.bleed(particles, h);
+        let mut objective = self.objective(&self.now, h);
         loop {
             report.n_newton += 1;
             let drive = |i: usize| {
-                particles.p[i] + h * (self.now.f[i] + self.stiffness.row_times(i, &self.now.d))
+                self.p[i] + h * (self.now.f[i] + self.stiffness.row_times(i, &self.now.d))
             };
             self.drive.clear();
             self.drive.extend((0..n).map(drive));
-            let most = self.now.f.iter().zip(&particles.p).map(|(f, p)| (p + h * f).norm());
+            if let Some(particle) = self.drive.iter().position(|b| !b.iter().all(|c| c.is_finite()))
+            {
+                return Err(StepError::NotFinite { particle });
+            }
+            let most = self.now.f.iter().zip(&self.p).map(|(f, p)| (p + h * f).norm());
             let tolerance = self.tolerance * most.fold(0.0, f64::max);
             let problem = ConvexProblem {
                 h,
@@ -135,12 +152,19 @@ impl<R: Restraint> Implicit<R> {
                 stiffness: &self.stiffness,
                 tolerance: 0.1 * tolerance,
             };
-            self.next.d.clone_from(&self.now.d);
+            if report.n_newton == 1 {
+                // Go on as before, to begin with.
+                let on = |i: usize| h * self.conjugates[i].held().velocity(&self.p[i]);
+                self.next.d.clear();
+                self.next.d.extend((0..n).map(on));
+            } else {
+                self.next.d.clone_from(&self.now.d);
+            }
             let convex = self.solver.solve(&problem, &mut self.next.d, &mut solve)?;
             report.n_solves += convex.n_solves;
             report.n_unknowns += convex.n_unknowns;
             let falls = self.line_search(particles, h, &mut objective, &mut evaluate);
-            let (residual, converged) = self.residual(particles, h, tolerance);
+            let (residual, converged) = self.residual(h, tolerance);
             (report.residual, report.converged) = (residual, converged);
             if converged || !falls || report.n_newton == MAX_NEWTON {
                 break;
@@ -165,10 +189,29 @@ impl<R: Restraint> Implicit<R> {
         Ok(())
     }
 
+    /// Momenta at the beginning of the step: those of resting particles such that they end it as if
+    /// they had bled under the force that they feel now. They stay within the ball of radius p_r, so
+    /// T does not notice; a force so strong that they would not moves the particle anyway. Returns
+    /// what is missing.
+    fn bleed(&mut self, particles: &Particles, h: f64) -> Vector3 {
+        self.p.clone_from(&particles.p);
+        let mut bled = Vector3::zeros();
+        let Some(tau) = self.bleeding else { return bled };
+        for (i, p) in self.p.iter_mut().enumerate() {
+            let conjugate = &self.conjugates[i];
+            let left = bleeding_kick(p, &self.now.f[i], h, tau) - h * self.now.f[i];
+            if conjugate.stays(p) && conjugate.stays(&left) {
+                bled += *p - left;
+                *p = left;
+            }
+        }
+        bled
+    }
+
     /// What a step minimises (J s).
-    fn objective(&self, trial: &Trial, particles: &Particles, h: f64) -> f64 {
+    fn objective(&self, trial: &Trial, h: f64) -> f64 {
         let kinetic = |i: usize| {
-            h * self.conjugates[i].psi(trial.d[i].norm() / h) - particles.p[i].dot(&trial.d[i])
+            h * self.conjugates[i].psi(trial.d[i].norm() / h) - self.p[i].dot(&trial.d[i])
         };
         (0..trial.d.len()).map(kinetic).sum::<f64>() + h * trial.potential
     }
@@ -183,12 +226,14 @@ impl<R: Restraint> Implicit<R> {
         evaluate: &mut impl FnMut(&[Vector3], &mut [Vector3], &mut SparseBlocks) -> f64,
     ) -> bool {
         let before = *objective;
-        // Rounding of the objective.
-        let slack = 1e-13 * (before.abs() + h * self.now.potential.abs());
+        let slope = self.slope(h, false);
+        let size = before.abs() + h * self.now.potential.abs();
         for _ in 0..MAX_HALVINGS {
             self.next.evaluate(&particles.x, &mut self.stiffness, evaluate);
-            let after = self.objective(&self.next, particles, h);
-            if after <= before + slack {
+            let after = self.objective(&self.next, h);
+            // Near the minimum the objective is all rounding, and its slope tells more.
+            let flatter = || self.slope(h, true).abs() <= 0.5 * slope.abs();
+            if after <= before + 1e-13 * size || (after <= before + 1e-6 * size && flatter()) {
                 std::mem::swap(&mut self.now, &mut self.next);
                 *objective = after;
                 return true;
@@ -202,15 +247,39 @@ impl<R: Restraint> Implicit<R> {
         false
     }
 
-    fn residual(&self, particles: &Particles, h: f64, tolerance: f64) -> (f64, bool) {
+    /// Derivative of the objective on the way from `now` to `next`, at one of these ends.
+    fn slope(&self, h: f64, at_next: bool) -> f64 {
+        let end = if at_next { &self.next } else { &self.now };
+        let along = |i: usize| {
+            let change = self.next.d[i] - self.now.d[i];
+            let conjugate = &self.conjugates[i];
+            let kinetic = if end.d[i] == Vector3::zeros() {
+                // The kink, from the side of the other end.
+                let height = conjugate.held().p_r() * change.norm();
+                if change == Vector3::zeros() {
+                    0.0
+                } else if at_next {
+                    -height
+                } else {
+                    height
+                }
+            } else {
+                conjugate.momentum(&(end.d[i] / h)).dot(&change)
+            };
+            kinetic - (self.p[i] + h * end.f[i]).dot(&change)
+        };
+        (0..self.now.d.len()).map(along).sum()
+    }
+
+    fn residual(&self, h: f64, tolerance: f64) -> (f64, bool) {
         let (mut worst, mut converged) = (0.0f64, true);
-        for i in 0..particles.len() {
-            let p = particles.p[i] + h * self.now.f[i];
+        for i in 0..self.p.len() {
+            let p = self.p[i] + h * self.now.f[i];
             let error = momentum_error(&self.conjugates[i], &p, &self.now.d[i], h);
             // Forces inherit the rounding of positions, times the stiffness.
             let mut stiff = self.stiffness.diagonal(i).norm() * self.now.x[i].norm();
             self.stiffness.visit_row(i, |j, block| stiff += block.norm() * self.now.x[j].norm());
-            let rounding = p.norm() + particles.p[i].norm() + h * stiff;
+            let rounding = p.norm() + self.p[i].norm() + h * stiff;
             worst = worst.max(error);
             converged &= error <= tolerance + 4.0 * f64::EPSILON * rounding;
         }
@@ -226,16 +295,10 @@ impl<R: Restraint> Implicit<R> {
         for i in 0..particles.len() {
             let (d, f, conjugate) = (&self.now.d[i], &self.now.f[i], &self.conjugates[i]);
             let p = &mut self.drive[i];
-            let kicked = particles.p[i] + h * f;
+            let kicked = self.p[i] + h * f;
             // The slope of ψ for movers: p + h f has the error of the displacement times h² k/m.
             *p = if *d == Vector3::zeros() { kicked } else { conjugate.momentum(&(d / h)) };
             let motion = conjugate.held().motion(p);
-            if let (Some(tau), Motion::Rest) = (self.bleeding, motion)
-                && conjugate.stays(&particles.p[i])
-            {
-                *p = bleeding_kick(&particles.p[i], f, h, tau);
-                report.moved.bled += kicked - *p;
-            }
             report.moved.count(motion);
             if !self.now.x[i].iter().chain(p.iter()).all(|c| c.is_finite()) {
                 return Err(StepError::NotFinite { particle: i });

@@ -21,7 +21,7 @@ use nalgebra::{DMatrix, DVector};
 /// [`Implicit::step`](crate::Implicit::step).
 ///
 /// # Errors
-/// A step that is not positive and finite, a singular system, or a result that is not finite. The
+/// A step that is not positive and finite, a pattern of another size, a singular system, or a result that is not finite. The
 /// particles are then as they were.
 pub fn algorithm_1(
     particles: &mut Particles,
@@ -33,6 +33,9 @@ pub fn algorithm_1(
 ) -> Result<usize, StepError> {
     check_time("the step", h)?;
     let n = particles.len();
+    if stiffness.n_rows() != n {
+        return Err(StepError::Pattern { rows: stiffness.n_rows(), particles: n });
+    }
     let m = particles.masses();
     let mut f = vec![Vector3::zeros(); n];
     stiffness.clear();
@@ -71,7 +74,9 @@ pub fn algorithm_1(
         rhs.fixed_rows_mut::<3>(3 * a).copy_from(&dp[i]);
     }
     let unknowns = active.len();
-    let solution = matrix.lu().solve(&rhs).ok_or(StepError::Singular { unknowns })?;
+    // nalgebra does not solve systems without unknowns.
+    let solution = if unknowns == 0 { Some(rhs) } else { matrix.lu().solve(&rhs) };
+    let solution = solution.ok_or(StepError::Singular { unknowns })?;
     for (a, &i) in active.iter().enumerate() {
         dp[i] = solution.fixed_rows::<3>(3 * a).into_owned();
     }

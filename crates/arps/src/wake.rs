@@ -35,7 +35,8 @@ impl Rest {
     }
 
     /// The time at which it wakes (s), infinity for never. It is too early by some units of rounding
-    /// rather than too late.
+    /// rather than too late. With a momentum or force that is not a number it wakes at once, so that
+    /// somebody sees it.
     pub fn wakes_at(&self) -> f64 {
         let wait = match self.bleeding {
             None => self.leaves_after(&self.f),
@@ -46,6 +47,9 @@ impl Rest {
                 if y < 1.0 { -tau * (-y).ln_1p() } else { f64::INFINITY }
             }
         };
+        if wait.is_nan() {
+            return self.since;
+        }
         // Rounding of p, f and the time itself.
         let early = 8.0 * f64::EPSILON * (wait + self.since.abs());
         if wait < f64::INFINITY { (self.since + wait - early).max(self.since) } else { wait }

@@ -84,7 +84,7 @@ proptest! {
                 }
             }
             prop_assert_eq!(queue.len(), list.iter().flatten().count());
-            prop_assert_eq!(queue.is_empty(), queue.len() == 0);
+            prop_assert_eq!(queue.is_empty(), list.iter().flatten().next().is_none());
         }
     }
 }
@@ -103,6 +103,7 @@ fn edges() {
     assert_eq!(Rest { p_r: f64::INFINITY, ..rest }.wakes_at(), f64::INFINITY);
     let holds = Rest { p: Vector3::zeros(), bleeding: Some(0.99), ..rest };
     assert_eq!(holds.wakes_at(), f64::INFINITY);
+    assert_eq!(Rest { f: f64::NAN * Vector3::x(), ..rest }.wakes_at(), 3.0);
     // A force so small that the plain formula would cancel to nothing.
     let creeps = Rest { p: 0.5 * Vector3::y(), f: Vector3::new(1e-12, 1e-9, 0.0), ..rest };
     assert!((creeps.momentum_at(creeps.wakes_at()).norm() - 1.0).abs() < 1e-12);

@@ -1,59 +1,80 @@
-//! What keeps cloth from passing through things, as the solver sees it: a potential that rises without
-//! bound as a gap closes, and a bound on every step, so that none is made that closes one.
+//! What keeps cloth from passing through things, as the solver sees it.
 //!
-//! A stage starts where nothing touches and makes only steps of which a continuous test says that
-//! they are free. So nothing ever passes through anything, converged or not (Li2020). What is held by
-//! the contact, obstacles, moves to its place at the end of the stage along with these steps.
+//! A stage begins with a look along the way that inertia alone would take the cloth. What comes near
+//! on it gets an energy of a gap that is linear in the positions: the normal and the points of contact
+//! are those of the place where things come near. So the energies are convex, finite everywhere and
+//! known before the first iteration, and Newton's method needs no shorter steps for their sake. When
+//! it is done, the whole way is looked at again: what was overlooked gets its energy, and iterations
+//! follow; in the end a continuous test shortens what is left. So nothing passes through
+//! anything, converged or not.
 
 use crate::force::Stage;
 use crate::solver::BlockMatrix;
 use mesh_core::World3;
+
+/// Something is in the way of two bodies that no motion can satisfy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blocked {
+    /// Where (m).
+    pub place: World3,
+}
 
 /// Contact of the cloth with whatever it must not pass.
 pub trait Contact: Send + Sync {
     /// A short name for reports.
     fn name(&self) -> &'static str;
 
-    /// A stage begins: takes what it lags, and where obstacles are to go. The positions `x_t0` of the
-    /// stage belong to the first time, its end is the second (s); masses are those of the vertices (kg).
-    /// The energy at `x_t0` may be asked for without looking ahead first.
-    fn begin(&mut self, stage: Stage<'_>, times: [f64; 2], mass: &[f64]);
+    /// A stage begins: finds what comes near on the way from `stage.x_t0` to `target`, where the
+    /// vertices would go without forces (m), while obstacles go theirs, and takes what it lags.
+    /// The positions `x_t0` belong to the first time, the end of the stage is the second (s); masses are
+    /// those of the vertices (kg).
+    fn begin(&mut self, stage: Stage<'_>, times: [f64; 2], mass: &[f64], target: &[World3]);
 
-    /// Finds what may come close on the way from `x` by `step` (m), while obstacles go where they are
-    /// to be; returns the share of the way that is certainly free, from 0 to 1.
-    fn look_ahead(&mut self, x: &[World3], step: &[World3]) -> f64;
+    /// Pairs of vertices that share stiffness because they touch, repeats allowed.
+    fn couples(&self) -> Vec<[u32; 2]>;
 
-    /// Lets what was found in the way of obstacles go along with them: changes `step` from `x` (m) and
-    /// tells whether there was anything to change.
-    fn carry(&self, x: &[World3], step: &mut [World3]) -> bool;
-
-    /// Obstacles go this share of the way to where they are to be.
-    fn follow(&mut self, share: f64);
-
-    /// Whether obstacles are where they are to be at the end of the stage.
-    fn has_arrived(&self) -> bool;
-
-    /// Energy (J) of positions on the way that was last looked at.
+    /// Energy (J) of positions at the end of the stage.
     fn energy(&self, x: &[World3]) -> f64;
 
-    /// Adds gradient (N) and positive semi-definite stiffness (N/m), within the pattern that the
-    /// matrix has.
+    /// Adds gradient (N) and positive semi-definite stiffness (N/m); the pattern has room for
+    /// [`Contact::couples`].
     fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix);
+
+    /// Looks along the way from the start of the stage to `x` (m) for what has no energy yet and gives
+    /// it one; true if there was something.
+    fn look(&mut self, x: &[World3]) -> bool;
+
+    /// Shortens the way from the start of the stage to `x` (m) until it is certainly free, without
+    /// moving the vertices that are `fixed`; returns how many vertices it moved.
+    ///
+    /// # Errors
+    /// If there is no such way.
+    fn secure(&mut self, x: &mut [World3], fixed: &[bool]) -> Result<usize, Blocked>;
+
+    /// How many contacts there are in this stage.
+    fn n_touches(&self) -> usize;
 }
 
 /// Stiffness of a contact in units of the mass of what touches over h²: enough to stop a vertex that
 /// comes with a few times d̂/h.
 pub const STIFFNESS: f64 = 20.0;
 
+/// Share of d̂ below which the barrier is a parabola.
+pub const CORE: f64 = 0.2;
+
 /// The barrier −(d − d̂)² ln(d/d̂) for a gap d below d̂, zero beyond (Li2020 Eq. 6, here of the distance
-/// itself), with its first two derivatives; infinite for d ≤ 0. Energy is this times a stiffness
-/// (N/m).
+/// itself), with its first two derivatives. Energy is this times a stiffness
+/// (N/m). Below [`CORE`] it goes on as a parabola: the gap is a prediction, and a finite energy lets an
+/// iteration come from the wrong side.
 pub fn barrier(d: f64, d_hat: f64) -> [f64; 3] {
     if d >= d_hat {
         return [0.0; 3];
     }
-    if d <= 0.0 || d.is_nan() {
-        return [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY];
+    if d < CORE * d_hat {
+        let [energy, slope, curvature] = barrier(CORE * d_hat, d_hat);
+        let deeper = d - CORE * d_hat;
+        let rise = slope * deeper + 0.5 * curvature * deeper * deeper;
+        return [energy + rise, slope + curvature * deeper, curvature];
     }
     let (gap, log) = (d - d_hat, (d / d_hat).ln());
     let ratio = gap / d;
@@ -97,8 +118,7 @@ mod tests {
     #[test]
     fn barriers_repel_and_friction_is_smooth() {
         assert_eq!(barrier(1.0, 1.0), [0.0; 3]);
-        assert_eq!(barrier(0.0, 1.0)[0], f64::INFINITY);
-        assert!(barrier(0.5, 1.0)[1] < 0.0 && barrier(1e-9, 1.0)[0] > barrier(1e-6, 1.0)[0]);
+        assert!(barrier(0.5, 1.0)[1] < 0.0 && barrier(-2.0, 1.0)[0] > barrier(-1.0, 1.0)[0]);
         let [inside, outside] = [0.999_999, 1.000_001].map(|y| friction(y, 1.0));
         assert!((inside[0] - outside[0]).abs() < 1e-5 && (inside[1] - 1.0).abs() < 1e-5);
         assert_eq!(friction(0.0, 1.0)[1], 0.0);

@@ -6,6 +6,7 @@
 //! the start, so a stage cannot blow up at any stiffness; stopping early costs accuracy, is allowed
 //! ("one iteration is the fast setting") and is always reported.
 
+use crate::contact::Blocked;
 use crate::element::Stiffness;
 use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
 use crate::solver::{LinearSolver, clear_fixed};
@@ -29,8 +30,6 @@ pub(crate) struct Inertia<'a> {
     pub time: f64,
     /// Vertices that do not move from where the start has them.
     pub fixed: &'a [bool],
-    /// Positions at the start of the stage (m).
-    pub x_t0: &'a [World3],
 }
 
 impl Inertia<'_> {
@@ -58,12 +57,8 @@ const REST_STARTS: u32 = 7;
 /// Iterations are allowed up to this multiple of the limit while triangles are out of their strain
 /// limits.
 const LIMIT_PATIENCE: usize = 3;
-/// The same, while obstacles have not arrived where they are to be.
-const ARRIVAL_PATIENCE: usize = 6;
-/// How often what is in the way of obstacles is looked for, to go along with them.
-const MAX_CARRIES: usize = 16;
-/// Share of a free way that is gone: the rest keeps gaps open.
-const CAUTION: f64 = 0.9;
+/// How often contacts are looked for that came up during the iterations.
+const MAX_LOOKS: usize = 2;
 
 /// The lowest point so far, kept while steps that raise the potential are on trial.
 #[derive(Default)]
@@ -95,10 +90,6 @@ struct Newton<'a> {
     converged: bool,
     /// No descent is left within rounding.
     stuck: bool,
-    /// Share of their way that obstacles and handles have yet to go (1).
-    left: f64,
-    /// Where the fixed vertices are to be (m).
-    held: &'a [World3],
 }
 
 /// Minimises the incremental potential from the better of two starts: at rest where the step begins,
@@ -117,15 +108,7 @@ pub(crate) fn minimise(
     settings: &NewtonSettings,
 ) -> Result<(Vec<World3>, SolveReport), SolveError> {
     let clock = Instant::now();
-    let (x, phi) = match system.contact {
-        None => choose_start(system, inertia, starts)?,
-        Some(_) => start_in_contact(system, inertia)?,
-    };
-    // Handles and obstacles go to their places in the first steps.
-    let is_in_place = system.contact.as_ref().is_none_or(|contact| {
-        let in_place = |(i, x): (usize, &World3)| !inertia.fixed[i] || *x == starts[0][i];
-        contact.has_arrived() && x.iter().enumerate().all(in_place)
-    });
+    let (x, phi) = choose_start(system, inertia, starts)?;
     let energy_s = clock.elapsed().as_secs_f64();
     let report = SolveReport { stages: 1, residual: f64::INFINITY, energy_s, ..Default::default() };
     let mut newton = Newton {
@@ -135,8 +118,6 @@ pub(crate) fn minimise(
         exact_failed_at: f64::INFINITY,
         converged: false,
         stuck: false,
-        left: if is_in_place { 0.0 } else { 1.0 },
-        held: &starts[0],
         system,
         solver,
         inertia,
@@ -145,17 +126,14 @@ pub(crate) fn minimise(
         x,
         phi,
     };
-    let mut budget = settings.max_iterations;
+    let (mut budget, mut looks) = (settings.max_iterations, 0);
     loop {
         while newton.report.iterations < budget && !newton.converged && !newton.stuck {
             newton.iterate(newton.report.iterations + 1 == budget)?;
         }
-        if newton.left > 0.0 {
-            if newton.report.iterations >= ARRIVAL_PATIENCE * settings.max_iterations {
-                return Err(SolveError::Caught { time: inertia.time, left: newton.left });
-            }
-            budget = newton.report.iterations + 1;
-            newton.stuck = false;
+        if looks < MAX_LOOKS && newton.look_for_contacts()? {
+            looks += 1;
+            budget = budget.max(newton.report.iterations + 1);
             continue;
         }
         let in_bounds = newton.respect_limits();
@@ -166,6 +144,7 @@ pub(crate) fn minimise(
         budget = newton.report.iterations + 1;
     }
     newton.report.unconverged = usize::from(!newton.converged);
+    newton.secure()?;
     Ok((newton.x, newton.report))
 }
 
@@ -188,20 +167,6 @@ fn choose_start(
     } else if phi.is_finite() {
         system.rests = REST_STARTS;
         Ok((resting.clone(), phi))
-    } else {
-        Err(SolveError::NotFinite { time: inertia.time, h: inertia.h })
-    }
-}
-
-/// The start of a stage with contact: where the cloth is, handles and obstacles included.
-fn start_in_contact(
-    system: &System,
-    inertia: &Inertia<'_>,
-) -> Result<(Vec<World3>, f64), SolveError> {
-    let x = inertia.x_t0.to_vec();
-    let phi = inertia.potential(system, &x);
-    if phi.is_finite() {
-        Ok((x, phi))
     } else {
         Err(SolveError::NotFinite { time: inertia.time, h: inertia.h })
     }
@@ -266,32 +231,7 @@ impl Newton<'_> {
     }
 
     /// Makes the step; false if not in full.
-    fn advance(&mut self, mut direction: Vec<World3>, mut slope: f64, is_last: bool) -> bool {
-        let mut is_whole = true;
-        if let Some(contact) = &mut self.system.contact {
-            if self.left > 0.0 {
-                let (x, held, fixed) = (&self.x, self.held, self.inertia.fixed);
-                for i in (0..x.len()).filter(|&i| fixed[i]) {
-                    direction[i] = held[i] - x[i];
-                }
-            }
-            let mut free = contact.look_ahead(&self.x, &direction);
-            for _ in 0..MAX_CARRIES {
-                if self.left == 0.0 || free == 1.0 || !contact.carry(&self.x, &mut direction) {
-                    break;
-                }
-                free = contact.look_ahead(&self.x, &direction);
-            }
-            if free < 1.0 {
-                let share = CAUTION * free;
-                par::for_each(&mut direction, |_, d| *d *= share);
-                slope *= share;
-                is_whole = false;
-            }
-            if self.left > 0.0 {
-                return self.accompany(direction, if is_whole { 1.0 } else { CAUTION * free });
-            }
-        }
+    fn advance(&mut self, direction: Vec<World3>, slope: f64, is_last: bool) -> bool {
         let x = &self.x;
         self.system.predict(x, &direction);
         par::fill(&mut self.trial, |i| x[i] + direction[i]);
@@ -312,30 +252,7 @@ impl Newton<'_> {
             return false;
         }
         std::mem::swap(&mut self.x, &mut self.trial);
-        is_whole
-    }
-
-    /// Makes a step while obstacles or handles move: it cannot be judged by a potential that changes
-    /// with them.
-    fn accompany(&mut self, direction: Vec<World3>, share: f64) -> bool {
-        self.system.predict(&self.x, &direction);
-        par::for_each(&mut self.x, |i, x| *x += direction[i]);
-        if let Some(contact) = &mut self.system.contact {
-            contact.follow(share);
-        }
-        self.left *= 1.0 - share;
-        if self.left == 0.0 {
-            let (held, fixed) = (self.held, self.inertia.fixed);
-            // Exactly, not to rounding.
-            par::for_each(&mut self.x, |i, x| {
-                if fixed[i] {
-                    *x = held[i];
-                }
-            });
-        }
-        self.phi = self.inertia.potential(self.system, &self.x);
-        self.lowest.age = 0;
-        false
+        true
     }
 
     /// Returns to the lowest point and follows its direction by halves until the potential has fallen
@@ -344,10 +261,6 @@ impl Newton<'_> {
         let lowest = &mut self.lowest;
         let mut share = 1.0;
         lowest.age = 0;
-        if let Some(contact) = &mut self.system.contact {
-            // Its way was free when it was taken, and obstacles have not moved since.
-            contact.look_ahead(&lowest.x, &lowest.direction);
-        }
         for _ in 0..MAX_HALVINGS {
             share *= 0.5;
             par::for_each(&mut lowest.direction, |_, d| *d *= 0.5);
@@ -375,7 +288,6 @@ impl Newton<'_> {
         self.trial.copy_from_slice(&self.x);
         let in_bounds = match limits.project(&mut self.trial, &mass) {
             None => true,
-            Some(_) if !self.trial_is_free() => false,
             Some(all) => {
                 let phi = self.inertia.potential(self.system, &self.trial);
                 let is_lower = phi <= self.phi + noise(self.phi);
@@ -391,12 +303,30 @@ impl Newton<'_> {
         in_bounds
     }
 
-    /// Whether the way to the trial touches nothing.
-    fn trial_is_free(&mut self) -> bool {
-        let Some(contact) = &mut self.system.contact else { return true };
-        let step: Vec<World3> =
-            self.trial.iter().zip(&self.x).map(|(to, from)| to - from).collect();
-        contact.look_ahead(&self.x, &step) == 1.0
+    /// Gives energies to contacts that came up on the way; true if there are any.
+    fn look_for_contacts(&mut self) -> Result<bool, SolveError> {
+        let Some(contact) = &mut self.system.contact else { return Ok(false) };
+        let clock = Instant::now();
+        let is_new = contact.look(&self.x);
+        if is_new {
+            self.system.make_room_for_contact()?;
+            self.phi = self.inertia.potential(self.system, &self.x);
+            self.lowest.age = 0;
+            (self.converged, self.stuck) = (false, false);
+        }
+        self.report.contact_s += clock.elapsed().as_secs_f64();
+        Ok(is_new)
+    }
+
+    /// Shortens the way of the stage until nothing passes through anything on it.
+    fn secure(&mut self) -> Result<(), SolveError> {
+        let Some(contact) = &mut self.system.contact else { return Ok(()) };
+        let clock = Instant::now();
+        let caught = |Blocked { place }| SolveError::Caught { time: self.inertia.time, place };
+        self.report.shortened = contact.secure(&mut self.x, self.inertia.fixed).map_err(caught)?;
+        self.report.touches = contact.n_touches();
+        self.report.contact_s += clock.elapsed().as_secs_f64();
+        Ok(())
     }
 }
 

@@ -1,9 +1,12 @@
 //! Contact with a fixed plane, without friction: the simplest of obstacles.
 
-use crate::contact::{Contact, STIFFNESS, barrier};
+use crate::contact::{Blocked, Contact, STIFFNESS, barrier};
 use crate::force::Stage;
 use crate::solver::BlockMatrix;
 use mesh_core::{World3, par};
+
+/// Share of its gap, or of the thickness, that a vertex keeps in a step.
+const CLEAR: f64 = 0.1;
 
 /// A plane that cloth stays above.
 #[derive(Debug)]
@@ -14,6 +17,8 @@ pub struct PlaneContact {
     thickness: f64,
     /// Mass over h² by vertex (N/m).
     inertia: Vec<f64>,
+    /// Gap that each vertex keeps in this stage (m).
+    least: Vec<f64>,
 }
 
 impl PlaneContact {
@@ -21,7 +26,13 @@ impl PlaneContact {
     /// repels from less than `thickness` (m).
     pub fn new(point: World3, normal: World3, thickness: f64) -> Self {
         let normal = normal.normalize();
-        PlaneContact { normal, height: normal.dot(&point), thickness, inertia: Vec::new() }
+        PlaneContact {
+            normal,
+            height: normal.dot(&point),
+            thickness,
+            inertia: Vec::new(),
+            least: Vec::new(),
+        }
     }
 
     fn gap(&self, x: &World3) -> f64 {
@@ -34,28 +45,15 @@ impl Contact for PlaneContact {
         "plane"
     }
 
-    fn begin(&mut self, stage: Stage<'_>, _: [f64; 2], mass: &[f64]) {
+    fn begin(&mut self, stage: Stage<'_>, _: [f64; 2], mass: &[f64], _: &[World3]) {
         self.inertia.clear();
         self.inertia.extend(mass.iter().map(|m| m / (stage.h * stage.h)));
+        let least = |x: &World3| CLEAR * self.gap(x).min(self.thickness);
+        self.least = stage.x_t0.iter().map(least).collect();
     }
 
-    fn look_ahead(&mut self, x: &[World3], step: &[World3]) -> f64 {
-        let share = |(x, step): (&World3, &World3)| {
-            let (from, to) = (self.gap(x), self.gap(&(x + step)));
-            // The last millionth of the gap covers rounding.
-            if to > 1e-6 * from { 1.0 } else { ((1.0 - 1e-6) * from / (from - to)).clamp(0.0, 1.0) }
-        };
-        x.iter().zip(step).map(share).fold(1.0, f64::min)
-    }
-
-    fn carry(&self, _: &[World3], _: &mut [World3]) -> bool {
-        false
-    }
-
-    fn follow(&mut self, _: f64) {}
-
-    fn has_arrived(&self) -> bool {
-        true
+    fn couples(&self) -> Vec<[u32; 2]> {
+        Vec::new()
     }
 
     fn energy(&self, x: &[World3]) -> f64 {
@@ -75,5 +73,29 @@ impl Contact for PlaneContact {
                     self.normal * self.normal.transpose() * (curvature * k);
             }
         }
+    }
+
+    fn look(&mut self, _: &[World3]) -> bool {
+        // Every vertex has its energy from the start.
+        false
+    }
+
+    fn secure(&mut self, x: &mut [World3], fixed: &[bool]) -> Result<usize, Blocked> {
+        let mut n = 0;
+        for ((x, least), fixed) in x.iter_mut().zip(&self.least).zip(fixed) {
+            let lift = least - (self.normal.dot(x) - self.height);
+            if lift > 0.0 && *fixed {
+                return Err(Blocked { place: *x });
+            }
+            if lift > 0.0 {
+                *x += self.normal * lift;
+                n += 1;
+            }
+        }
+        Ok(n)
+    }
+
+    fn n_touches(&self) -> usize {
+        self.inertia.len()
     }
 }

@@ -1,6 +1,7 @@
 //! When a solve stops, what it did, and why it failed.
 
-use crate::solver::{LinearError, LinearReport};
+use crate::solver::{LinearError, LinearReport, PatternError};
+use mesh_core::World3;
 
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +44,12 @@ pub struct SolveReport {
     pub linear_s: f64,
     /// Time spent on energies in the line search (s).
     pub energy_s: f64,
+    /// Time spent on finding contacts and on keeping ways free (s).
+    pub contact_s: f64,
+    /// Contacts with an energy, over all stages.
+    pub touches: usize,
+    /// Vertices whose way was shortened in the end, because something was in it.
+    pub shortened: usize,
 }
 
 impl SolveReport {
@@ -59,6 +66,9 @@ impl SolveReport {
         self.assembly_s += other.assembly_s;
         self.linear_s += other.linear_s;
         self.energy_s += other.energy_s;
+        self.contact_s += other.contact_s;
+        self.touches += other.touches;
+        self.shortened += other.shortened;
     }
 
     pub(crate) fn note(&mut self, linear: &LinearReport) {
@@ -82,14 +92,20 @@ pub enum SolveError {
         /// Step of the stage (s).
         h: f64,
     },
-    /// Cloth is in the way of an obstacle or of a handle, and could not be moved out of it.
-    #[error("at time {time} s: the cloth is caught, with {left} of the way of obstacles left")]
+    /// Cloth is in the way of obstacles or handles that leave it no room.
+    #[error(
+        "at time {time} s: the cloth is caught between obstacles or handles at ({}, {}, {}) m",
+        place.x, place.y, place.z
+    )]
     Caught {
         /// Time at the end of the stage (s).
         time: f64,
-        /// Share of the way that obstacles have not gone (1).
-        left: f64,
+        /// Where (m).
+        place: World3,
     },
+    /// The contacts couple more vertices than the matrix can hold.
+    #[error(transparent)]
+    Pattern(#[from] PatternError),
     /// The linear solver failed.
     #[error("at time {time} s: {source}")]
     Linear {

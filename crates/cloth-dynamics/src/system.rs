@@ -10,7 +10,7 @@ use crate::membrane::MembraneModel;
 use crate::point_forces::{Gravity, MassDamping, Springs};
 use crate::rest::RestTriangle;
 use crate::shape_operator::ShapeOperatorModel;
-use crate::solver::{BlockMatrix, PatternBuilder, PatternError};
+use crate::solver::{BlockMatrix, BlockPattern, PatternBuilder, PatternError};
 use crate::strain_limit::StrainLimitModel;
 use crate::strain_projection::StrainProjection;
 use crate::wind::{Wind, WindModel};
@@ -35,11 +35,16 @@ pub struct Constraints {
     pub springs: Vec<(u32, World3, f64)>,
 }
 
+/// How much more room than it needs contact may keep.
+const FEW: usize = 8;
+
 /// The forces of one mesh. Built anew when the mesh changes.
 pub struct System {
     forces: Vec<Box<dyn Force>>,
     pub(crate) springs: Springs,
     pub(crate) matrix: BlockMatrix,
+    /// The pattern of the forces, without contact.
+    mesh_pattern: Arc<BlockPattern>,
     /// What keeps the cloth from passing through things, if anything does.
     pub(crate) contact: Option<Box<dyn Contact>>,
     /// Stages to come that need not look for a better start than rest.
@@ -101,7 +106,15 @@ impl System {
         for force in &mut forces {
             force.bind(matrix.pattern());
         }
-        Ok(System { forces, springs: Springs::default(), matrix, rests: 0, limits, contact: None })
+        Ok(System {
+            forces,
+            springs: Springs::default(),
+            mesh_pattern: matrix.pattern().clone(),
+            matrix,
+            rests: 0,
+            limits,
+            contact: None,
+        })
     }
 
     /// Gives the cloth contact. Steps then start where nothing touches and keep it so.
@@ -148,6 +161,28 @@ impl System {
         for force in &mut self.forces {
             force.predict(x, step);
         }
+    }
+
+    /// Makes the pattern large enough for the current contacts. One that is too large stays, until it
+    /// is [`FEW`] times as large as it need be.
+    pub(crate) fn make_room_for_contact(&mut self) -> Result<(), PatternError> {
+        let Some(contact) = &self.contact else { return Ok(()) };
+        let couples = contact.couples();
+        let pattern = self.matrix.pattern();
+        let has =
+            |[a, b]: &[u32; 2]| pattern.slot(*a.max(b) as usize, *a.min(b) as usize).is_some();
+        let n_more = pattern.n_blocks() - self.mesh_pattern.n_blocks();
+        if couples.iter().all(has) && n_more <= FEW * couples.len() {
+            return Ok(());
+        }
+        let mut wider = PatternBuilder::new(pattern.n_vertices());
+        wider.add(&self.mesh_pattern.pairs())?;
+        wider.add(&couples)?;
+        self.matrix = BlockMatrix::new(Arc::new(wider.build()?));
+        for force in &mut self.forces {
+            force.bind(self.matrix.pattern());
+        }
+        Ok(())
     }
 
     /// Sets the matrix to the stiffness and adds the gradient.

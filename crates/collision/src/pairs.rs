@@ -156,79 +156,141 @@ impl<'a> Features<'a> {
         all
     }
 
+    /// Calls `found` with the vertices that a triangle owns and that are near.
     #[inline]
-    fn vertices_near(&self, owner: u32, near: &Aabb) -> impl Iterator<Item = u32> {
-        let owned = self.body.surface.owned_vertices(owner);
-        owned.filter(move |&v| self.vertices[v as usize].overlaps(near))
+    fn vertices_near(&self, owner: u32, near: &Aabb, mut found: impl FnMut(u32)) {
+        for v in self.body.surface.owned_vertices(owner) {
+            if self.vertices[v as usize].overlaps(near) {
+                found(v);
+            }
+        }
     }
 
+    /// Calls `found` with the edges that a triangle owns and that are near.
     #[inline]
-    fn edges_near(&self, owner: u32, near: &Aabb) -> impl Iterator<Item = u32> {
-        let owned = self.body.surface.owned_edges(owner);
-        owned.filter(move |&e| self.edges[e as usize].overlaps(near))
+    fn edges_near(&self, owner: u32, near: &Aabb, mut found: impl FnMut(u32)) {
+        for e in self.body.surface.owned_edges(owner) {
+            if self.edges[e as usize].overlaps(near) {
+                found(e);
+            }
+        }
     }
 }
 
 /// What `test` says about all pairs within a body whose boxes overlap, but for those with a vertex in
-/// common, in ascending order of pairs.
+/// common, in ascending order of pairs. Only pairs of triangles that `keep` keeps are looked into.
 pub(crate) fn search_within<T: Send>(
     body: Body<'_>,
     tree: &Bvh,
+    keep: impl Fn(u32, u32) -> bool + Sync,
     test: impl Fn(&Candidate) -> Option<T> + Sync,
 ) -> Vec<(Pair, T)> {
     let own = Features::of(body);
     let surface = body.surface;
-    let triangles = tree.self_pairs(|_, _| true);
+    let triangles = tree.self_pairs(keep);
     let mut found = par::collect(triangles.len(), |i, found| {
         let [a, b] = triangles[i];
         for (owner, other) in [(a, b), (b, a)] {
             let corners = surface.triangles()[other as usize];
-            for v in own.vertices_near(owner, &own.triangles[other as usize]) {
+            own.vertices_near(owner, &own.triangles[other as usize], |v| {
                 if !corners.contains(&v) {
                     let pair = Pair { kind: PairKind::VertexTriangle, a: v, b: other };
                     ask(pair, body, body, &test, found);
                 }
-            }
+            });
         }
-        for e in own.edges_near(a, &own.triangles[b as usize]) {
-            let ends = surface.edges()[e as usize];
-            for f in own.edges_near(b, &own.edges[e as usize]) {
-                if !surface.edges()[f as usize].iter().any(|v| ends.contains(v)) {
+        own.edges_near(a, &own.triangles[b as usize], |e| {
+            let [p, q] = surface.edges()[e as usize];
+            own.edges_near(b, &own.edges[e as usize], |f| {
+                let [r, s] = surface.edges()[f as usize];
+                if (p != r) & (p != s) & (q != r) & (q != s) {
                     let pair = Pair { kind: PairKind::EdgeEdge, a: e.min(f), b: e.max(f) };
                     ask(pair, body, body, &test, found);
                 }
-            }
-        }
+            });
+        });
     });
     found.sort_unstable_by_key(|(pair, _)| *pair);
     found
 }
 
 /// What `test` says about all pairs between two bodies whose boxes overlap, in ascending order of
-/// pairs.
+/// pairs. Only pairs of triangles that `keep` keeps are looked into.
 pub(crate) fn search_between<T: Send>(
     (a, tree_a): (Body<'_>, &Bvh),
     (b, tree_b): (Body<'_>, &Bvh),
+    keep: impl Fn(u32, u32) -> bool + Sync,
     test: impl Fn(&Candidate) -> Option<T> + Sync,
 ) -> Vec<(Pair, T)> {
+    let triangles = tree_a.pairs_with(tree_b, keep);
+    if triangles.is_empty() {
+        return Vec::new();
+    }
     let (first, second) = (Features::of(a), Features::of(b));
-    let triangles = tree_a.pairs_with(tree_b, |_, _| true);
     let mut found = par::collect(triangles.len(), |i, found| {
         let [s, t] = triangles[i];
-        for v in first.vertices_near(s, &second.triangles[t as usize]) {
+        first.vertices_near(s, &second.triangles[t as usize], |v| {
             ask(Pair { kind: PairKind::VertexTriangle, a: v, b: t }, a, b, &test, found);
-        }
-        for v in second.vertices_near(t, &first.triangles[s as usize]) {
+        });
+        second.vertices_near(t, &first.triangles[s as usize], |v| {
             ask(Pair { kind: PairKind::TriangleVertex, a: s, b: v }, a, b, &test, found);
-        }
-        for e in first.edges_near(s, &second.triangles[t as usize]) {
-            for f in second.edges_near(t, &first.edges[e as usize]) {
+        });
+        first.edges_near(s, &second.triangles[t as usize], |e| {
+            second.edges_near(t, &first.edges[e as usize], |f| {
                 ask(Pair { kind: PairKind::EdgeEdge, a: e, b: f }, a, b, &test, found);
-            }
-        }
+            });
+        });
     });
     found.sort_unstable_by_key(|(pair, _)| *pair);
     found
+}
+
+/// Triangles with what tells quickly that two of them stay apart.
+pub(crate) struct Apart {
+    all: Vec<Moving>,
+}
+
+#[derive(Clone, Copy)]
+struct Moving {
+    x: [World3; 3],
+    /// Three times the centre.
+    centre: World3,
+    motion: World3,
+    /// The radius and by what the corners' motions differ from the mean at most (m).
+    room: f64,
+}
+
+impl Apart {
+    pub(crate) fn of(body: Body<'_>) -> Apart {
+        let zero = World3::zeros();
+        let none = Moving { x: [zero; 3], centre: zero, motion: zero, room: 0.0 };
+        let mut all = vec![none; body.surface.n_triangles()];
+        par::fill(&mut all, |t| {
+            let corners = &body.surface.triangles()[t];
+            let x = corners.map(|v| body.x_t0[v as usize]);
+            let motions = corners.map(|v| body.x_t1[v as usize] - body.x_t0[v as usize]);
+            let motion = (motions[0] + motions[1] + motions[2]) / 3.0;
+            let spread =
+                motions.map(|m| (m - motion).norm_squared()).into_iter().fold(0.0, f64::max);
+            let room = body.radius_of(corners) + spread.sqrt();
+            Moving { x, centre: x[0] + x[1] + x[2], motion, room }
+        });
+        Apart { all }
+    }
+
+    /// True unless triangle `i` and triangle `j` of `other` certainly stay apart by more than their
+    /// radii: a gap along the line of their centres that the relative motion cannot close.
+    #[inline]
+    pub(crate) fn may_meet(&self, i: u32, other: &Apart, j: u32) -> bool {
+        let (a, b) = (&self.all[i as usize], &other.all[j as usize]);
+        let axis = b.centre - a.centre;
+        let [p, q, r] = a.x.map(|x| axis.dot(&x));
+        let [s, t, u] = b.x.map(|x| axis.dot(&x));
+        let gap = s.min(t).min(u) - p.max(q).max(r);
+        let reach = a.room + b.room + (a.motion - b.motion).norm();
+        // The tolerance is far above the rounding of a gap worth the name.
+        !(gap > 0.0 && gap * gap > reach * reach * axis.norm_squared() * (1.0 + 1e-6))
+    }
 }
 
 /// Tests one pair.
@@ -240,15 +302,20 @@ fn ask<T>(
     test: &impl Fn(&Candidate) -> Option<T>,
     found: &mut Vec<(Pair, T)>,
 ) {
-    let (vertices, first) = (pair.vertices(a.surface, b.surface), pair.of_first());
-    let body = |i: usize| if first[i] { &a } else { &b };
-    let n = if pair.kind == PairKind::EdgeEdge { 2 } else { 1 };
-    let (front, rear) = vertices.split_at(n);
-    let candidate = Candidate {
-        pair,
-        x_t0: std::array::from_fn(|i| body(i).x_t0[vertices[i] as usize]),
-        x_t1: std::array::from_fn(|i| body(i).x_t1[vertices[i] as usize]),
-        thickness: body(0).radius_of(front) + body(3).radius_of(rear),
+    let vertices = pair.vertices(a.surface, b.surface);
+    let [i, j, k, l] = vertices.map(|v| v as usize);
+    // Without a choice for each vertex, which would cost more than most tests.
+    let of = |front: &[World3], rear: &[World3]| match pair.kind {
+        PairKind::EdgeEdge => [front[i], front[j], rear[k], rear[l]],
+        PairKind::VertexTriangle => [front[i], rear[j], rear[k], rear[l]],
+        PairKind::TriangleVertex => [rear[i], front[j], front[k], front[l]],
     };
+    let thickness = match (pair.kind, &vertices) {
+        (PairKind::EdgeEdge, [p, q, r, s]) => a.radius_of(&[*p, *q]) + b.radius_of(&[*r, *s]),
+        (PairKind::VertexTriangle, [v, p, q, r]) => a.radius_of(&[*v]) + b.radius_of(&[*p, *q, *r]),
+        (PairKind::TriangleVertex, [v, p, q, r]) => b.radius_of(&[*v]) + a.radius_of(&[*p, *q, *r]),
+    };
+    let candidate =
+        Candidate { pair, x_t0: of(a.x_t0, b.x_t0), x_t1: of(a.x_t1, b.x_t1), thickness };
     found.extend(test(&candidate).map(|answer| (pair, answer)));
 }

@@ -63,7 +63,7 @@ impl Spread {
 type Figure = (&'static str, fn(&FrameReport) -> f64);
 
 /// The figures of [`Info::totals`], in the order shown.
-const FIGURES: [Figure; 19] = [
+const FIGURES: [Figure; 23] = [
     ("vertices", |r| r.vertices as f64),
     ("faces", |r| r.faces as f64),
     ("substeps", |r| f64::from(r.substeps)),
@@ -72,6 +72,9 @@ const FIGURES: [Figure; 19] = [
     ("linear_iterations", |r| r.linear_iterations as f64),
     ("factorisations", |r| r.factorisations as f64),
     ("unconverged_stages", |r| r.unconverged_stages as f64),
+    ("contacts", |r| r.contacts as f64),
+    ("shortened_ways", |r| r.shortened_ways as f64),
+    ("crossings", |r| r.crossings.unwrap_or(0) as f64),
     ("splits", |r| r.remesh.map_or(0.0, |m| m.splits as f64)),
     ("flips", |r| r.remesh.map_or(0.0, |m| m.flips as f64)),
     ("collapses", |r| r.remesh.map_or(0.0, |m| m.collapses as f64)),
@@ -81,6 +84,7 @@ const FIGURES: [Figure; 19] = [
     ("seconds.assembly", |r| r.seconds.assembly),
     ("seconds.linear", |r| r.seconds.linear),
     ("seconds.energy", |r| r.seconds.energy),
+    ("seconds.contact", |r| r.seconds.contact),
     ("seconds.sizing", |r| r.seconds.sizing),
     ("seconds.remesh", |r| r.seconds.remesh),
 ];

@@ -20,6 +20,8 @@ pub struct Seconds {
     pub linear: f64,
     /// Energies in the line search (s).
     pub energy: f64,
+    /// Finding contacts and keeping ways free (s).
+    pub contact: f64,
     /// Sizing field (s).
     pub sizing: f64,
     /// Mesh edits (s).
@@ -31,6 +33,7 @@ impl Seconds {
         self.assembly = solve.assembly_s;
         self.linear = solve.linear_s;
         self.energy = solve.energy_s;
+        self.contact = solve.contact_s;
     }
 }
 
@@ -101,6 +104,12 @@ pub struct FrameReport {
     pub stages: usize,
     /// Implicit stages that stopped before they reached the tolerance.
     pub unconverged_stages: usize,
+    /// Contacts with an energy, over all stages.
+    pub contacts: usize,
+    /// Vertices whose way was shortened at the end of a stage, because something was in it.
+    pub shortened_ways: usize,
+    /// Edges that pass through triangles at the end of the frame; absent without contact.
+    pub crossings: Option<usize>,
     /// Largest change of velocity in a last iteration (m/s).
     pub residual_m_per_s: f64,
     /// Extreme principal stretches.
@@ -120,7 +129,8 @@ impl FrameReport {
     pub fn initial(world: &World) -> FrameReport {
         let solve = SolveReport::default();
         let stretch = StretchRange::of(&world.cloth);
-        FrameReport::new(world, 0, 0, &solve, None, stretch, Seconds::default())
+        let crossings = world.contact.map(|_| 0);
+        FrameReport::new(world, 0, 0, &solve, None, crossings, stretch, Seconds::default())
     }
 
     pub(crate) fn new(
@@ -129,6 +139,7 @@ impl FrameReport {
         retries: u32,
         solve: &SolveReport,
         remesh: Option<&RemeshReport>,
+        crossings: Option<usize>,
         stretch: StretchRange,
         seconds: Seconds,
     ) -> FrameReport {
@@ -146,6 +157,9 @@ impl FrameReport {
             halvings: solve.halvings,
             stages: solve.stages,
             unconverged_stages: solve.unconverged,
+            contacts: solve.touches,
+            shortened_ways: solve.shortened,
+            crossings,
             residual_m_per_s: solve.residual,
             stretch: Some(stretch),
             remesh: remesh.map(|r| RemeshSummary {

@@ -229,6 +229,7 @@ impl World {
         }
         let stretch = StretchRange::of(&self.cloth);
         let mut remesh = None;
+        let mut n_crossings = 0;
         if let Some(remeshing) = &self.remeshing {
             let (before, next) = (self.cloth.mesh.uids().to_vec(), self.cloth.mesh.next_uid());
             let keep = self.handles.names();
@@ -243,11 +244,9 @@ impl World {
                 // time; in the end, everywhere.
                 let mut hold = Vec::new();
                 for round in 0..=HOLD_ROUNDS {
-                    let Some(crossings) =
-                        (report.n_edits() > 0).then(|| self.crossings(frame)).flatten()
-                    else {
-                        break;
-                    };
+                    let crossings = self.crossings(frame);
+                    n_crossings = crossings.as_ref().map_or(0, |crossings| crossings.n);
+                    let Some(crossings) = crossings.filter(|_| report.n_edits() > 0) else { break };
                     self.cloth = saved.clone();
                     hold.extend(crossings.vertices_near(&self.cloth));
                     if round == HOLD_ROUNDS {
@@ -263,12 +262,15 @@ impl World {
             seconds.sizing = times[0];
             seconds.remesh = times[1];
             remesh = Some(report);
+        } else if self.contact.is_some() {
+            n_crossings = self.crossings(frame).map_or(0, |crossings| crossings.n);
         }
         self.frame = frame;
         seconds.solve(&solve);
         seconds.total = clock.elapsed().as_secs_f64();
         let (substeps, remesh) = (self.substeps, remesh.as_ref());
-        Ok(FrameReport::new(self, substeps, retries, &solve, remesh, stretch, seconds))
+        let crossings = self.contact.map(|_| n_crossings);
+        Ok(FrameReport::new(self, substeps, retries, &solve, remesh, crossings, stretch, seconds))
     }
 
     /// One step; a failing one is redone in halves.

@@ -1,13 +1,17 @@
 //! Small nets of springs with a convex energy, kicked now and then: what implicit schemes are tried
 //! on.
 
-use arps::{Implicit, Law, Matrix3, Particles, SparseBlocks, Speed, StepError, Vector3, paper};
+use arps::{
+    Held, Implicit, Law, Matrix3, Particle, Particles, Restraint, SparseBlocks, Speed, StepError,
+    Vector3, paper,
+};
 
 /// Springs between particles of 10 g, convex: each pulls with k (‖d‖ − l) once it is longer than l
 /// and never pushes. With l = 0 the forces are linear.
 pub(crate) struct Net {
     pub(crate) x: Vec<Vector3>,
     springs: Vec<Spring>,
+    pins: Vec<usize>,
 }
 
 struct Spring {
@@ -41,16 +45,25 @@ impl Net {
     /// A chain of 12 with linear springs, every other one `ratio` times as stiff.
     pub(crate) fn chain(ratio: f64) -> Net {
         let x = (0..12).map(|i| Vector3::new(0.1 * f64::from(i), 0.0, 0.0)).collect();
-        let stiffness = |i: usize| if i % 2 == 0 { SOFTEST } else { SOFTEST * ratio };
+        let stiffness = |i: usize| if i.is_multiple_of(2) { SOFTEST } else { SOFTEST * ratio };
         let spring = |i| Spring { ends: [i, i + 1], stiffness: stiffness(i), length: 0.0 };
-        Net { x, springs: (0..11).map(spring).collect() }
+        Net { x, springs: (0..11).map(spring).collect(), pins: vec![0, 11] }
     }
 
-    /// A net of 6 × 6 with springs of 10 cm that only pull; stiffnesses are spread over the ratio at
-    /// random.
+    /// A net of 6 × 6 with linear springs whose stiffnesses are spread over the ratio at random.
     pub(crate) fn square(ratio: f64) -> Net {
+        Net::woven(ratio, 0.0)
+    }
+
+    /// The same with springs of 10 cm that only pull, 2 % stretched to begin with: their stiffness
+    /// jumps where they go slack.
+    pub(crate) fn slack(ratio: f64) -> Net {
+        Net::woven(ratio, 0.1)
+    }
+
+    fn woven(ratio: f64, length: f64) -> Net {
         let mut dice = Dice(1);
-        let at = |i: usize, j: usize| Vector3::new(0.1 * i as f64, 0.1 * j as f64, 0.0);
+        let at = |i: usize, j: usize| Vector3::new(0.102 * i as f64, 0.102 * j as f64, 0.0);
         let x = (0..36).map(|v| at(v / 6, v % 6)).collect();
         let mut springs = Vec::new();
         for v in 0..36 {
@@ -58,14 +71,14 @@ impl Net {
             let up = (v < 30).then_some(v + 6);
             for w in right.into_iter().chain(up) {
                 let stiffness = SOFTEST * ratio.powf(dice.roll());
-                springs.push(Spring { ends: [v, w], stiffness, length: 0.1 });
+                springs.push(Spring { ends: [v, w], stiffness, length });
             }
         }
-        Net { x, springs }
+        Net { x, springs, pins: vec![0, 5, 30, 35] }
     }
 
     pub(crate) fn pattern(&self) -> SparseBlocks {
-        SparseBlocks::new(self.x.len(), self.springs.iter().map(|spring| spring.ends))
+        SparseBlocks::new(self.x.len(), self.springs.iter().map(|spring| spring.ends)).unwrap()
     }
 
     pub(crate) fn particles(&self) -> Particles {
@@ -106,13 +119,16 @@ impl Net {
             .sum()
     }
 
-    /// How far rounding of the positions moves the potential energy (J): Σ |force| · ε · |x|, times 16.
-    fn rounding(&self, x: &[Vector3]) -> f64 {
+    /// How far rounding of the positions moves the energy in a step (J), times 16: the potential
+    /// energy by force times ε ‖x‖, the kinetic by velocity times the momentum h k ε ‖x‖.
+    fn rounding(&self, particles: &Particles, h: f64) -> f64 {
         let one = |s: &Spring| {
-            let stretch = ((x[s.ends[1]] - x[s.ends[0]]).norm() - s.length).max(0.0);
-            let size = x[s.ends[0]].norm() + x[s.ends[1]].norm();
-            let moved = f64::EPSILON * size;
-            s.stiffness * moved * (stretch + moved)
+            let [a, b] = s.ends;
+            let x = &particles.x;
+            let stretch = ((x[b] - x[a]).norm() - s.length).max(0.0);
+            let moved = f64::EPSILON * (x[a].norm() + x[b].norm());
+            let v = (particles.p[a].norm() + particles.p[b].norm()) / MASS;
+            s.stiffness * moved * (stretch + moved + h * v)
         };
         16.0 * self.springs.iter().map(one).sum::<f64>()
     }
@@ -121,6 +137,8 @@ impl Net {
 /// The scheme to try.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Method {
+    /// The implicit step without restraint.
+    Free,
     /// The convex step.
     Convex(Law),
     /// The paper's Algorithm 1.
@@ -146,11 +164,28 @@ pub(crate) struct Outcome {
     pub(crate) blew_up: Option<usize>,
 }
 
-/// Restrained particles under kicks: every 50 steps one of them gets up to 2 m/s.
+/// Thresholds of speed; the corners or ends of the net are held for ever.
+struct Pinned {
+    speed: Speed,
+    pins: Vec<usize>,
+}
+
+impl Restraint for Pinned {
+    fn at(&self, particle: &Particle) -> Held {
+        let held = self.speed.at(particle);
+        if self.pins.contains(&particle.index) { held.scaled(f64::INFINITY) } else { held }
+    }
+}
+
+/// Restrained particles under kicks: every 50 steps one of them gets up to 2 m/s, mostly little.
 pub(crate) fn run(net: &Net, method: Method, h: f64, n_steps: usize) -> Outcome {
-    let (Method::Convex(law) | Method::Paper(law)) = method;
-    let policy = Speed::with_law(law, 0.05, 0.05 * 20f64.sqrt()).unwrap();
-    let mut implicit = Implicit::new(policy, net.pattern());
+    let (law, v_r) = match method {
+        Method::Free => (Law::Ramp, 0.0),
+        Method::Convex(law) | Method::Paper(law) => (law, 0.2),
+    };
+    let speed = Speed::with_law(law, v_r, v_r * 20f64.sqrt()).unwrap();
+    let policy = Pinned { speed, pins: net.pins.clone() };
+    let mut implicit = Implicit::new(&policy, net.pattern());
     let mut pattern = net.pattern();
     let mut particles = net.particles();
     let mut dice = Dice(7);
@@ -165,13 +200,13 @@ pub(crate) fn run(net: &Net, method: Method, h: f64, n_steps: usize) -> Outcome 
         if steps % 50 == 0 {
             let before = energy(&particles);
             let i = ((dice.roll() * n as f64) as usize).min(n - 1);
-            particles.p[i] += 2.0 * MASS * dice.vector();
+            particles.p[i] += 2.0 * dice.roll().powi(4) * MASS * dice.vector();
             given += (energy(&particles) - before).abs();
         }
         steps += 1;
         let before = energy(&particles);
         let result: Result<(), StepError> = match method {
-            Method::Convex(_) => {
+            Method::Free | Method::Convex(_) => {
                 let evaluate =
                     |x: &[Vector3], f: &mut [Vector3], l: &mut SparseBlocks| net.evaluate(x, f, l);
                 implicit
@@ -201,7 +236,7 @@ pub(crate) fn run(net: &Net, method: Method, h: f64, n_steps: usize) -> Outcome 
         }
         let gain = after - before;
         outcome.gain = outcome.gain.max(gain / given);
-        let rounding = 1e-14 * (before + after) + net.rounding(&particles.x);
+        let rounding = 1e-14 * (before + after) + net.rounding(&particles, h);
         outcome.gain_by_rounding = outcome.gain_by_rounding.max(gain / rounding);
     }
     outcome.solves /= steps as f64;

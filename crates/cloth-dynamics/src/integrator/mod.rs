@@ -12,6 +12,7 @@ use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
 use crate::solver::LinearSolver;
 use crate::system::{Constraints, System};
 use mesh_core::{ClothState, World3};
+use std::time::Instant;
 
 /// One step of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,9 +77,14 @@ fn solve_stage(
         resting[i] = x;
     }
     let starts = [resting, target.clone()];
+    let clock = Instant::now();
     if let Some(contact) = &mut system.contact {
-        contact.begin(Stage { x_t0, base, h }, [time_t0, time], &cloth.m);
+        contact.begin(Stage { x_t0, base, h }, [time_t0, time], &cloth.m, &target);
+        system.make_room_for_contact()?;
     }
-    let inertia = Inertia { mass: &cloth.m, target: &target, h, time, fixed: &fixed, x_t0 };
-    minimise(system, solver, &inertia, &starts, settings)
+    let contact_s = clock.elapsed().as_secs_f64();
+    let inertia = Inertia { mass: &cloth.m, target: &target, h, time, fixed: &fixed };
+    let (x, mut report) = minimise(system, solver, &inertia, &starts, settings)?;
+    report.contact_s += contact_s;
+    Ok((x, report))
 }

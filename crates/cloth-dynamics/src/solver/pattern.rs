@@ -194,6 +194,12 @@ impl BlockPattern {
         &self.rows
     }
 
+    /// Row and column of every block below the diagonal.
+    pub fn pairs(&self) -> Vec<[u32; 2]> {
+        let below = |j: usize| self.column(j).skip(1).map(move |slot| [self.rows[slot], j as u32]);
+        (0..self.n_vertices()).flat_map(below).collect()
+    }
+
     /// The slots of column `j`.
     pub(super) fn column(&self, j: usize) -> std::ops::Range<usize> {
         self.col_ptr[j] as usize..self.col_ptr[j + 1] as usize

@@ -22,7 +22,7 @@ pub(crate) fn run(args: &args::Info) -> Result<(), Failure> {
 /// Columns of the table of frames: name, width, content.
 type Column = (&'static str, usize, fn(&FrameReport) -> String);
 
-const COLUMNS: [Column; 17] = [
+const COLUMNS: [Column; 21] = [
     ("frame", 6, |r| r.frame.to_string()),
     ("time s", 9, |r| format!("{:.4}", r.time_s)),
     ("vertices", 9, |r| r.vertices.to_string()),
@@ -33,11 +33,15 @@ const COLUMNS: [Column; 17] = [
     ("factor", 7, |r| r.factorisations.to_string()),
     ("unconv", 7, |r| r.unconverged_stages.to_string()),
     ("redone", 7, |r| r.retries.to_string()),
+    ("contacts", 9, |r| r.contacts.to_string()),
+    ("short", 6, |r| r.shortened_ways.to_string()),
+    ("cross", 6, |r| r.crossings.map_or("-".into(), |n| n.to_string())),
     ("total s", 9, |r| seconds(r.seconds.total)),
     ("build s", 10, |r| seconds(r.seconds.build)),
     ("assembly s", 11, |r| seconds(r.seconds.assembly)),
     ("linear s", 10, |r| seconds(r.seconds.linear)),
     ("energy s", 10, |r| seconds(r.seconds.energy)),
+    ("contact s", 10, |r| seconds(r.seconds.contact)),
     ("sizing s", 10, |r| seconds(r.seconds.sizing)),
     ("remesh s", 10, |r| seconds(r.seconds.remesh)),
 ];

@@ -7,10 +7,9 @@ use mesh_core::{World3, par};
 /// Pairs with the way for which they were sought.
 #[derive(Default)]
 pub(super) struct Candidates {
-    /// With their distances at the start of the way (m).
-    pub(super) pairs: Vec<(Sides, f64)>,
-    /// Positions there, of the cloth and of the obstacles (m).
-    pub(super) start: [Vec<World3>; 2],
+    pub(super) pairs: Vec<Sides>,
+    /// Positions at the start of the way, of the cloth and of the obstacles (m).
+    start: [Vec<World3>; 2],
     /// The way from there to its end (m).
     way: [Vec<World3>; 2],
     /// By how much things may come nearer than on the way (m).
@@ -21,7 +20,7 @@ impl Candidates {
     /// Pairs that are complete for the way of the cloth from `x[0]` to `x[1]` while the obstacles go
     /// theirs (m), and for all that brings things nearer than on it by no more than `skin` (m).
     pub(super) fn new(
-        pairs: Vec<(Sides, f64)>,
+        pairs: Vec<Sides>,
         skin: f64,
         x: [&[World3]; 2],
         obstacles: [&[World3]; 2],

@@ -15,9 +15,12 @@ pub(super) struct Sides {
     /// Which are the cloth's.
     pub(super) is_cloth: [bool; 4],
     pub(super) is_edges: bool,
+    /// Distance below which they repel each other (m).
+    pub(super) thickness: f64,
 }
 
 /// The closest points of a pair.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct ClosestPoints {
     pub(super) weights: [f64; 4],
     pub(super) offset: World3,
@@ -25,7 +28,12 @@ pub(super) struct ClosestPoints {
 }
 
 impl Sides {
-    pub(super) fn new(pair: Pair, vertices: [u32; 4], within_cloth: bool) -> Sides {
+    pub(super) fn new(
+        pair: Pair,
+        vertices: [u32; 4],
+        within_cloth: bool,
+        thickness: f64,
+    ) -> Sides {
         let of_first = pair.of_first();
         let is_edges = pair.kind == PairKind::EdgeEdge;
         let front = if is_edges { 2 } else { 1 };
@@ -34,7 +42,31 @@ impl Sides {
             is_first: std::array::from_fn(|k| k < front),
             is_cloth: of_first.map(|is_first| within_cloth || is_first),
             is_edges,
+            thickness,
         }
+    }
+
+    /// The corners, which are the cloth's at `x` or the obstacles' at `y` (m).
+    pub(super) fn corners(&self, x: &[World3], y: &[World3]) -> [World3; 4] {
+        std::array::from_fn(|k| {
+            let i = self.vertices[k] as usize;
+            if self.is_cloth[k] { x[i] } else { y[i] }
+        })
+    }
+
+    /// What tells pairs apart.
+    pub(super) fn key(&self) -> [u32; 5] {
+        let [a, b, c, d] = self.vertices;
+        let bit = |k: usize| u32::from(self.is_cloth[k]) << k;
+        [a, b, c, d, (0..4).map(bit).sum::<u32>() | u32::from(self.is_edges) << 4]
+    }
+
+    /// Pairs of vertices of the cloth.
+    pub(super) fn couples(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
+        let (vertices, is_cloth) = (self.vertices, self.is_cloth);
+        let pairs = (0..4).flat_map(|a| (0..a).map(move |b| (a, b)));
+        let cloth = pairs.filter(move |&(a, b)| is_cloth[a] && is_cloth[b]);
+        cloth.map(move |(a, b)| [vertices[a], vertices[b]])
     }
 
     pub(super) fn is_within_cloth(&self) -> bool {
@@ -72,21 +104,20 @@ impl Sides {
         }
     }
 
-    /// Adds a stiffness of the offset to the blocks within each side, which the pattern always has.
-    /// Where both sides are cloth, twice as much: (a + b)ᵀK(a + b) ≤ 2 aᵀK a + 2 bᵀK b.
+    /// Adds a stiffness of the offset to the vertices of the cloth.
     pub(super) fn add_stiffness(
         &self,
         weights: &[f64; 4],
         stiffness: &Matrix3<f64>,
         to: &mut BlockMatrix,
     ) {
-        let factor = if self.is_within_cloth() { 2.0 } else { 1.0 };
-        for a in (0..4).filter(|&a| self.is_cloth[a]) {
-            for b in (0..=a).filter(|&b| self.is_cloth[b] && self.is_first[a] == self.is_first[b]) {
+        for a in (0..4).filter(|&a| self.is_cloth[a] && weights[a] != 0.0) {
+            for b in (0..=a).filter(|&b| self.is_cloth[b] && weights[b] != 0.0) {
                 let (i, j) = (self.vertices[a] as usize, self.vertices[b] as usize);
-                let slot = to.pattern().slot(i.max(j), i.min(j)).expect("edges are in the pattern");
+                let slot =
+                    to.pattern().slot(i.max(j), i.min(j)).expect("there is room for contact");
                 // The blocks are symmetric, so that their order does not matter.
-                to.add(slot, &(stiffness * (factor * weights[a] * weights[b])));
+                to.add(slot, &(stiffness * (weights[a] * weights[b])));
             }
         }
     }

@@ -1,0 +1,80 @@
+//! The obstacles as contact sees them.
+
+use crate::obstacle::Obstacle;
+use collision::{Bvh, Surface, SurfaceError};
+use mesh_core::World3;
+use std::sync::Arc;
+
+/// Where the vertices of all obstacles are at a time (s).
+pub type Motion = Arc<dyn Fn(f64) -> Vec<World3> + Send + Sync>;
+
+/// All obstacles of a scene as one surface.
+#[derive(Clone)]
+pub struct Obstacles {
+    /// Their triangles.
+    pub surface: Surface,
+    /// Where their vertices are.
+    pub motion: Motion,
+    /// Friction coefficient of every triangle's obstacle on cloth, by vertex (1).
+    pub friction: Vec<f64>,
+}
+
+impl Obstacles {
+    /// All obstacles of a scene; `None` if there are none.
+    ///
+    /// # Errors
+    /// If there are too many triangles.
+    pub fn new(obstacles: &[Obstacle]) -> Result<Option<Obstacles>, SurfaceError> {
+        let mut surface: Option<Surface> = None;
+        let mut friction = Vec::new();
+        for obstacle in obstacles {
+            let n = obstacle.n_vertices();
+            let own = Surface::new(n, &obstacle.triangles)?;
+            surface = Some(match surface {
+                None => own,
+                Some(others) => others.joined(&own),
+            });
+            friction.extend(std::iter::repeat_n(obstacle.friction, n));
+        }
+        let bodies = obstacles.to_vec();
+        let motion = move |time| bodies.iter().flat_map(|body| body.positions(time)).collect();
+        Ok(surface.map(|surface| Obstacles { surface, friction, motion: Arc::new(motion) }))
+    }
+}
+
+/// The obstacles on their way.
+pub(super) struct Moving {
+    pub(super) fixed: Obstacles,
+    pub(super) tree: Bvh,
+    /// The way for which the tree was made (m); empty if there is none.
+    pub(super) tree_way: [Vec<World3>; 2],
+    /// Where they are at the start and at the end of the stage (m).
+    pub(super) now: Vec<World3>,
+    pub(super) then: Vec<World3>,
+    /// The times of these (s).
+    times: [f64; 2],
+}
+
+impl Moving {
+    pub(super) fn new(fixed: &Obstacles) -> Moving {
+        Moving {
+            fixed: fixed.clone(),
+            tree: Bvh::build(0, |_| collision::Aabb::EMPTY),
+            tree_way: [Vec::new(), Vec::new()],
+            now: Vec::new(),
+            then: Vec::new(),
+            times: [f64::NAN; 2],
+        }
+    }
+
+    /// Goes to the stage between two times (s).
+    pub(super) fn go_to(&mut self, [from, to]: [f64; 2]) {
+        if self.times[1] == from {
+            std::mem::swap(&mut self.now, &mut self.then);
+        } else if self.times[0] != from {
+            self.now = (self.fixed.motion)(from);
+        }
+        self.then = (self.fixed.motion)(to);
+        self.times = [from, to];
+    }
+}

@@ -1,0 +1,90 @@
+//! The search for pairs that may touch.
+
+use super::candidates::Candidates;
+use super::{SurfaceContact, pair::Sides};
+use collision::{Aabb, Body, Pair, swept};
+use mesh_core::{World3, par};
+
+/// Share of the thickness by which things may come nearer before candidates are sought anew.
+const SKIN: f64 = 0.3;
+
+impl SurfaceContact {
+    /// Makes the candidates complete for the way of the cloth from `x` to `x_t1` (m), while obstacles go
+    /// theirs.
+    pub(super) fn cover(&mut self, x: &[World3], x_t1: &[World3]) {
+        let (now, then) = self.obstacle_way();
+        if !self.candidates.are_complete([x, x_t1], [now, then]) {
+            self.search(x, x_t1);
+            self.n_searches += 1;
+            self.distances.clear();
+        }
+    }
+
+    fn obstacle_way(&self) -> (&[World3], &[World3]) {
+        self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then))
+    }
+
+    /// Finds candidates anew, for this way and for what is near it.
+    fn search(&mut self, x: &[World3], x_t1: &[World3]) {
+        let skin = SKIN * self.settings.thickness;
+        let half = 0.5 * (self.settings.thickness + skin);
+        let radius = |_: u32| half;
+        let mut found: Vec<(usize, Pair, f64)> = Vec::new();
+        if self.settings.self_contact {
+            // What all of it has in common brings nothing nearer.
+            let n = x.len().max(1) as f64;
+            let drift = x.iter().zip(x_t1).map(|(from, to)| to - from).sum::<World3>() / n;
+            let mut end = vec![World3::zeros(); x.len()];
+            par::fill(&mut end, |i| x_t1[i] - drift);
+            let body = Body::moving(&self.cloth, x, &end, &radius);
+            body.update_tree(&mut self.cloth_tree);
+            let pairs = swept::near_within(body, &self.cloth_tree);
+            found.extend(pairs.into_iter().map(|(pair, distance)| (0, pair, distance)));
+        }
+        if let Some(moving) = &mut self.obstacles {
+            let around = |points: [&[World3]; 2], room: f64| {
+                Aabb::around(points.into_iter().flatten()).grown(room)
+            };
+            let room = self.settings.thickness + skin;
+            let is_near =
+                around([x, x_t1], room).overlaps(&around([&moving.now, &moving.then], room));
+            if is_near {
+                let other = Body::moving(&moving.fixed.surface, &moving.now, &moving.then, &radius);
+                if moving.tree_way[0] != moving.now || moving.tree_way[1] != moving.then {
+                    other.update_tree(&mut moving.tree);
+                    moving.tree_way = [moving.now.clone(), moving.then.clone()];
+                }
+                let body = Body::moving(&self.cloth, x, x_t1, &radius);
+                body.update_tree(&mut self.cloth_tree);
+                let sides = ((body, &self.cloth_tree), (other, &moving.tree));
+                let pairs = swept::near_between(sides.0, sides.1);
+                found.extend(pairs.into_iter().map(|(pair, distance)| (1, pair, distance)));
+            }
+        }
+        let mut pairs = vec![None; found.len()];
+        par::fill(&mut pairs, |k| {
+            let (set, pair, distance) = found[k];
+            let sides = self.sides(set, pair);
+            let (from, to) = (self.corners_now(&sides, x), self.corners_then(&sides, x_t1));
+            let left = distance - sides.relative_motion(&from, &to);
+            (left <= sides.thickness + skin).then_some(sides)
+        });
+        let pairs = pairs.into_iter().flatten().collect();
+        let (now, then) = self.obstacle_way();
+        self.candidates = Candidates::new(pairs, skin, [x, x_t1], [now, then]);
+    }
+
+    /// Where things of a pair are: `set` is 0 within the cloth and 1 with obstacles.
+    fn sides(&self, set: usize, pair: Pair) -> Sides {
+        let other = match &self.obstacles {
+            Some(moving) if set == 1 => &moving.fixed.surface,
+            _ => &self.cloth,
+        };
+        let thickness = self.settings.thickness;
+        let mut sides = Sides::new(pair, pair.vertices(&self.cloth, other), set == 0, thickness);
+        if set == 0 {
+            sides.thickness = thickness.min(self.rest.most(&sides));
+        }
+        sides
+    }
+}

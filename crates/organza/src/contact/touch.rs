@@ -1,0 +1,88 @@
+//! A contact with its energy: a gap that is linear in the positions, and the barrier that keeps it
+//! open.
+
+use super::pair::{ClosestPoints, Sides};
+use cloth_dynamics::contact::barrier;
+use cloth_dynamics::solver::BlockMatrix;
+use mesh_core::World3;
+
+/// One contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    pub(super) sides: Sides,
+    weights: [f64; 4],
+    normal: World3,
+    /// Part of the gap that the obstacle's side has (m).
+    offset: f64,
+    /// Gap below which there is a force (m).
+    thickness: f64,
+    /// Of the barrier (N/m).
+    stiffness: f64,
+}
+
+/// Share of the thickness that an approach may come to within its thickness before it is seen.
+const LANDING: f64 = 0.9;
+/// The most steps of an approach.
+const MAX_STEPS: usize = 12;
+
+impl Touch {
+    /// Of a pair with these closest points; `x` are its corners at the end of the stage, of which only
+    /// the obstacle's matter.
+    pub(super) fn new(
+        sides: Sides,
+        closest: &ClosestPoints,
+        x: &[World3; 4],
+        thickness: f64,
+        stiffness: f64,
+    ) -> Touch {
+        let (normal, weights) = (closest.offset / closest.distance, closest.weights);
+        let obstacle = (0..4).filter(|&k| !sides.is_cloth[k]);
+        let offset = obstacle.map(|k| normal.dot(&x[k]) * weights[k]).sum();
+        Touch { sides, weights, normal, offset, thickness, stiffness }
+    }
+
+    /// The gap at positions of the cloth at the end of the stage (m).
+    pub(super) fn gap(&self, x: &[World3]) -> f64 {
+        let cloth = (0..4).filter(|&k| self.sides.is_cloth[k]);
+        let of = |k: usize| self.normal.dot(&x[self.sides.vertices[k] as usize]) * self.weights[k];
+        cloth.map(of).sum::<f64>() + self.offset
+    }
+
+    pub(super) fn energy(&self, x: &[World3]) -> f64 {
+        self.stiffness * barrier(self.gap(x), self.thickness)[0]
+    }
+
+    pub(super) fn add_system(&self, x: &[World3], gradient: &mut [World3], to: &mut BlockMatrix) {
+        let [_, slope, curvature] = barrier(self.gap(x), self.thickness);
+        if slope < 0.0 {
+            let force = self.normal * (slope * self.stiffness);
+            self.sides.add_gradient(&self.weights, &force, gradient);
+            let along = self.normal * self.normal.transpose() * (curvature * self.stiffness);
+            self.sides.add_stiffness(&self.weights, &along, to);
+        }
+    }
+}
+
+/// Where a pair comes nearer than its thickness on the straight way from `x_t0` to `x_t1`; `None` if it
+/// does not. Advances by what the motion allows, so that nothing is passed over but grazing.
+pub(super) fn approach(
+    sides: &Sides,
+    [x_t0, x_t1]: [&[World3; 4]; 2],
+    start: ClosestPoints,
+    thickness: f64,
+) -> Option<ClosestPoints> {
+    let motion = sides.relative_motion(x_t0, x_t1);
+    let (mut t, mut closest) = (0.0, start);
+    for _ in 0..MAX_STEPS {
+        if closest.distance < thickness {
+            break;
+        }
+        t += (closest.distance - LANDING * thickness) / motion;
+        // Not a number where nothing moves.
+        if !(t < 1.0) {
+            return None;
+        }
+        closest = sides.closest(&std::array::from_fn(|k| x_t0[k] + (x_t1[k] - x_t0[k]) * t));
+    }
+    (closest.distance > 0.0 && closest.distance < thickness).then_some(closest)
+}
