@@ -85,7 +85,8 @@ impl<R: Restraint> Fluid<R> {
         check("emitters", from.layers.len(), self.emitters.len())?;
         for (k, id) in from.id.iter().enumerate() {
             for x in [&from.x[k], &from.listed[k]] {
-                let inside = self.settings.domain.contains(&nalgebra::Vector3::new(x[0], x[1], x[2]));
+                let inside =
+                    self.settings.domain.contains(&nalgebra::Vector3::new(x[0], x[1], x[2]));
                 if !inside || !from.u[k].iter().chain(&from.w[k]).all(|u| u.is_finite()) {
                     let speed = nalgebra::Vector4::from(from.u[k]).norm();
                     let (x, y, z) = (x[0], x[1], x[2]);

@@ -149,7 +149,8 @@ impl<R: Restraint> Fluid<R> {
     /// it (Monaghan1992 §10.3).
     pub fn step_bound(&self) -> f64 {
         let h = self.laws.kernel.smoothing_length();
-        let signal = self.settings.sound_speed * (1.0 + 0.6 * self.settings.viscosity) + self.fastest;
+        let signal =
+            self.settings.sound_speed * (1.0 + 0.6 * self.settings.viscosity) + self.fastest;
         let by_sound = self.settings.courant * h / signal;
         let by_force = 0.25 * (h / self.hardest).sqrt();
         by_sound.min(by_force)
@@ -181,7 +182,8 @@ impl<R: Restraint> Fluid<R> {
         }
         self.kick_and_drift(dt)?;
         self.time += dt;
-        report.moved = if self.restraint.is_some() { self.scratch.moved.movers.len() } else { n } as u64;
+        report.moved =
+            if self.restraint.is_some() { self.scratch.moved.movers.len() } else { n } as u64;
         if self.emit_and_drain(&mut report) || self.farthest > half_skin {
             self.list_neighbours();
             self.evaluate_all();

@@ -102,7 +102,11 @@ impl Grid {
             if pair[0] == pair[1] {
                 continue;
             }
-            let at = [c % self.dims[0], c / self.dims[0] % self.dims[1], c / self.dims[0] / self.dims[1]];
+            let at = [
+                c % self.dims[0],
+                c / self.dims[0] % self.dims[1],
+                c / self.dims[0] / self.dims[1],
+            ];
             let range = |k: usize, by: i64| (at[k] - by).max(0)..(at[k] + by + 1).min(self.dims[k]);
             for z in range(2, 1) {
                 for y in range(1, 1) {
@@ -176,7 +180,8 @@ impl Grid {
             let x1 = (((x + half) * self.inverse_cell[0]).floor() as i64).min(self.dims[0] - 1);
             if x0 <= x1 {
                 let first = (z * self.dims[1] + y) * self.dims[0];
-                let [from, to] = [first + x0, first + x1 + 1].map(|c| self.start[c as usize] as usize);
+                let [from, to] =
+                    [first + x0, first + x1 + 1].map(|c| self.start[c as usize] as usize);
                 *row = from..to;
             }
         }

@@ -163,7 +163,8 @@ impl Update<'_> {
         }
         for &i in touched.iter() {
             let k = i as usize;
-            let (p, w, density) = (&mut self.state.x[k], &mut self.state.w[k], self.state.density[k]);
+            let (p, w, density) =
+                (&mut self.state.x[k], &mut self.state.w[k], self.state.density[k]);
             let term = self.laws.pressure_term(density);
             let difference = term * density * density - p[3] * w[3] * w[3];
             let known = marks[k] & CHANGED != 0;
@@ -227,7 +228,8 @@ impl Update<'_> {
                 let there = named(at, here);
                 let [x0, x1, x2, new_term] = transpose(simd, pick(x, there));
                 let [_, _, _, old_term] = transpose(simd, pick(old_x, there));
-                let rise = (new_here.pressure_term - old_here.pressure_term) + (new_term - old_term);
+                let rise =
+                    (new_here.pressure_term - old_here.pressure_term) + (new_term - old_term);
                 let squared = Place(new_here.x).squared_distance(&Place([x0, x1, x2]));
                 let slope = kernel.value_and_slope(squared).1;
                 let by = laws.by_pressure(&new_here.x, &[x0, x1, x2], rise, slope);
@@ -239,8 +241,10 @@ impl Update<'_> {
                 let old_there = Side::gather(simd, pick(old_x, there), pick(old_w, there));
                 let new_squared = Place(new_here.x).squared_distance(&Place(new_there.x));
                 let old_squared = Place(old_here.x).squared_distance(&Place(old_there.x));
-                let new = laws.between(&new_here, &new_there, kernel.value_and_slope(new_squared).1);
-                let old = laws.between(&old_here, &old_there, kernel.value_and_slope(old_squared).1);
+                let new =
+                    laws.between(&new_here, &new_there, kernel.value_and_slope(new_squared).1);
+                let old =
+                    laws.between(&old_here, &old_there, kernel.value_and_slope(old_squared).1);
                 give(at, [0, 1, 2].map(|k| (new[k] - old[k]).array()));
             }
             let (new_here, old_here) = (Side::new(&x[i], &w[i]), Side::new(&old_x[i], &old_w[i]));

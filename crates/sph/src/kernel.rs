@@ -19,7 +19,12 @@ impl CubicSpline {
     /// The kernel with smoothing length `h` (m).
     pub fn new(h: f64) -> Self {
         let value_scale = 1.0 / (4.0 * PI * h * h * h);
-        CubicSpline { h, inverse_h: 1.0 / h, value_scale, slope_scale: -3.0 * value_scale / (h * h) }
+        CubicSpline {
+            h,
+            inverse_h: 1.0 / h,
+            value_scale,
+            slope_scale: -3.0 * value_scale / (h * h),
+        }
     }
 
     /// The smoothing length h (m).
@@ -50,7 +55,8 @@ impl CubicSpline {
         // Below `TINY` the difference loses its digits, but so small an offset makes no force.
         const TINY: f64 = 1e-100;
         let q = r_squared.root() * self.inverse_h;
-        let (outer, inner) = (q.from_which(2.0).at_least(0.0), q.from_which(1.0).at_least(0.0));
+        let (outer, inner) =
+            (q.subtracted_from(2.0).at_least(0.0), q.subtracted_from(1.0).at_least(0.0));
         let (outer_squared, inner_squared) = (outer * outer, inner * inner * 4.0);
         let value = outer_squared * outer - inner_squared * inner;
         let slope = (outer_squared - inner_squared) / q.at_least(TINY);

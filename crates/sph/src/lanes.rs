@@ -26,7 +26,7 @@ pub(crate) trait Number:
     /// The smaller of this and `bound`.
     fn at_most(self, bound: f64) -> Self;
     /// `from` − this.
-    fn from_which(self, from: f64) -> Self;
+    fn subtracted_from(self, from: f64) -> Self;
 }
 
 impl Number for f64 {
@@ -46,7 +46,7 @@ impl Number for f64 {
     }
 
     #[inline(always)]
-    fn from_which(self, from: f64) -> Self {
+    fn subtracted_from(self, from: f64) -> Self {
         from - self
     }
 }
@@ -158,7 +158,7 @@ impl<S: Simd> Number for Four<S> {
     }
 
     #[inline(always)]
-    fn from_which(self, from: f64) -> Self {
+    fn subtracted_from(self, from: f64) -> Self {
         Four::splat(self.simd, from) - self
     }
 }
@@ -180,7 +180,7 @@ mod tests {
     struct Formula([f64; LANES]);
 
     fn formula<N: Number>(x: N) -> N {
-        ((x * x + 0.3).root() / x.at_least(0.1) - x.at_most(0.2)).from_which(1.7) * 0.9
+        ((x * x + 0.3).root() / x.at_least(0.1) - x.at_most(0.2)).subtracted_from(1.7) * 0.9
     }
 
     impl WithSimd for Formula {

@@ -105,7 +105,13 @@ impl Laws {
 
     /// The part of [`Laws::between`] by a sum Pᵢ + Pⱼ = `terms`, for particles at `x` and `y` (m).
     #[inline(always)]
-    pub(crate) fn by_pressure<N: Number>(&self, x: &[N; 3], y: &[N; 3], terms: N, slope: N) -> [N; 3] {
+    pub(crate) fn by_pressure<N: Number>(
+        &self,
+        x: &[N; 3],
+        y: &[N; 3],
+        terms: N,
+        slope: N,
+    ) -> [N; 3] {
         let d = difference(x, y);
         let s = terms * (slope * -self.mass);
         [s * d[0], s * d[1], s * d[2]]

@@ -28,7 +28,8 @@ pub fn block(n: [usize; 3], corner: Vector3<f64>, spacing: f64, seed: u64) -> Ve
         let mut z = random;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) as f64 / u64::MAX as f64 - 0.5) * if seed == 0 { 0.0 } else { 2.0 * JITTER }
+        ((z ^ (z >> 31)) as f64 / u64::MAX as f64 - 0.5)
+            * if seed == 0 { 0.0 } else { 2.0 * JITTER }
     };
     let mut x = Vec::with_capacity(n[0] * n[1] * n[2]);
     for k in 0..n[2] {

@@ -105,7 +105,11 @@ impl FluidSettings {
             positive("size of domain", size[k])?;
             if size[k] / self.spacing > f64::from(MOST_CELLS) {
                 let wanted = "at most two million spacings";
-                return Err(FluidError::OutOfRange { name: "size of domain", value: size[k], wanted });
+                return Err(FluidError::OutOfRange {
+                    name: "size of domain",
+                    value: size[k],
+                    wanted,
+                });
             }
         }
         Ok(())

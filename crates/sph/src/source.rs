@@ -44,8 +44,7 @@ impl Emitter {
         }
         let direction = direction.normalize();
         let level = Vector3::z().cross(&direction);
-        let first =
-            if level.norm() > 1e-9 { level.normalize() } else { Vector3::x() };
+        let first = if level.norm() > 1e-9 { level.normalize() } else { Vector3::x() };
         let sides = [first, direction.cross(&first)];
         let (from, until) = (0.0, f64::INFINITY);
         Ok(Emitter { centre, direction, sides, half_size, speed, from, until, n_layers: 0 })
@@ -81,7 +80,10 @@ impl Emitter {
             for i in 0..n[0] {
                 for j in 0..n[1] {
                     let at = |i: i64, n: i64| (i as f64 - 0.5 * (n - 1) as f64) * spacing;
-                    push(middle + self.sides[0] * at(i, n[0]) + self.sides[1] * at(j, n[1]), velocity);
+                    push(
+                        middle + self.sides[0] * at(i, n[0]) + self.sides[1] * at(j, n[1]),
+                        velocity,
+                    );
                 }
             }
             self.n_layers += 1;

@@ -138,7 +138,8 @@ impl<R> Fluid<R> {
         }
         let m = self.laws.mass;
         let walls = self.touched.density.iter().zip(&self.touched.mass);
-        let of_walls: f64 = walls.map(|(&density, mass)| mass * self.laws.tait.energy(density)).sum();
+        let of_walls: f64 =
+            walls.map(|(&density, mass)| mass * self.laws.tait.energy(density)).sum();
         Energy {
             kinetic: m * sum.kinetic,
             internal: m * sum.internal + of_walls,

@@ -63,7 +63,9 @@ impl Walls {
             }
         }
         let around = |k: usize| (n[k] + 2 * LAYERS) as f64;
-        check_count(around(0) * around(1) * around(2) - n.map(|n| n as f64).iter().product::<f64>())?;
+        check_count(
+            around(0) * around(1) * around(2) - n.map(|n| n as f64).iter().product::<f64>(),
+        )?;
         let volume = (0..3).map(|k| size[k] / n[k] as f64).product();
         let range = |k: usize| {
             let low = if open.low[k] { 0 } else { -LAYERS };

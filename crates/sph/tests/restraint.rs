@@ -49,7 +49,8 @@ fn always_anew(fluid: &Fluid<Speed>) -> Fluid<Speed> {
 #[test]
 fn a_null_policy_has_the_bits_of_none() {
     let mut free = common::block_in_box([6, 4, 6], [10, 6, 10], 4);
-    let settings = RestraintSettings { bleeding: Some(0.1), ..RestraintSettings::of(free.settings()) };
+    let settings =
+        RestraintSettings { bleeding: Some(0.1), ..RestraintSettings::of(free.settings()) };
     let mut null = free.clone().restrained((), settings).unwrap();
     let mut zero = free.clone().restrained(Speed::new(0.0, 0.0).unwrap(), settings).unwrap();
     for _ in 0..5 {
@@ -131,7 +132,8 @@ fn what_rests_is_not_looked_at() {
 fn momentum_is_conserved_under_restraint() {
     for law in [Law::Ramp, Law::Soft, Law::Spline] {
         let fluid = common::free_ball(6);
-        let settings = RestraintSettings { sweep_above: 1.0, ..RestraintSettings::of(fluid.settings()) };
+        let settings =
+            RestraintSettings { sweep_above: 1.0, ..RestraintSettings::of(fluid.settings()) };
         let policy = Speed::with_law(law, 0.2, 0.6).unwrap();
         let mut fluid = fluid.restrained(policy, settings).unwrap();
         let scale: f64 = fluid.particles().map(|p| p.velocity.norm()).sum();

@@ -101,7 +101,10 @@ fn nozzles_let_out_what_they_should_and_sinks_take_it() {
     assert!(fluid.particles().all(|p| p.position.x < 1.0));
     for bad in [0.0, f64::NAN, -1.0] {
         assert!(Emitter::new(Vector3::zeros(), Vector3::x(), [0.1, 0.1], bad).is_err());
-        assert!(Emitter::new(Vector3::zeros(), Vector3::x() * bad, [0.1, 0.1], 1.0).is_err() || bad < 0.0);
+        assert!(
+            Emitter::new(Vector3::zeros(), Vector3::x() * bad, [0.1, 0.1], 1.0).is_err()
+                || bad < 0.0
+        );
     }
 }
 
@@ -132,7 +135,9 @@ fn water_rests_on_a_mesh_as_it_does_in_a_box() {
 
     let mut walls = Walls::none();
     assert!(walls.add_mesh(&corners, &[[0, 1, 4]], common::SPACING).is_err());
-    assert!(walls.add_mesh(&[Vector3::repeat(f64::NAN); 3], &[[0, 1, 2]], common::SPACING).is_err());
+    assert!(
+        walls.add_mesh(&[Vector3::repeat(f64::NAN); 3], &[[0, 1, 2]], common::SPACING).is_err()
+    );
     assert!(walls.add_mesh(&corners, &floor, 1e-9).is_err(), "too many particles");
     assert!(walls.add_box(&inside, open, 0.0).is_err());
     assert_eq!(walls.n_particles(), 0, "what failed left nothing");

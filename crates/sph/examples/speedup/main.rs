@@ -5,6 +5,7 @@
 //! with options `duration=15 frame=0.25 layers=20 v_r=0.05 ratio=2 tau=0.05 inactivity=0
 //! tolerance=0.01 sweep=0.3 law=ramp`.
 
+#[path = "../common/cpu_time.rs"]
 mod cpu_time;
 
 use arps::{Law, Speed};
@@ -81,7 +82,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let frame = options.number("frame", 0.25)?;
     let n_frames = (duration / frame).round() as usize;
     let bounds = free.settings().domain;
-    println!("   time   free s   held s  speed-up  moved%  swept%  changed%  fpairs%  lists   n    dens floor  height floor   E_kin free held");
+    println!(
+        "   time   free s   held s  speed-up  moved%  swept%  changed%  fpairs%  lists   n    dens floor  height floor   E_kin free held"
+    );
     let (mut error, mut floor) = (Difference::default(), Difference::default());
     let (mut free_s, mut held_s) = (0.0, 0.0);
     let mut speedups = Vec::new();
@@ -92,7 +95,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         run(&mut twin, until)?;
         (free_s, held_s) = (free_s + a, held_s + b);
         speedups.push(a / b);
-        let [x, y, z] = [Observation::new(&free, &bounds), Observation::new(&held, &bounds), Observation::new(&twin, &bounds)];
+        let [x, y, z] = [
+            Observation::new(&free, &bounds),
+            Observation::new(&held, &bounds),
+            Observation::new(&twin, &bounds),
+        ];
         let (off, noise) = (y.difference(&x), z.difference(&x));
         error.add_squares(&off);
         floor.add_squares(&noise);
@@ -106,12 +113,22 @@ fn main() -> Result<(), Box<dyn Error>> {
             percent(did.force_pairs * of_free.steps, of_free.force_pairs * did.steps),
             did.listings,
             held.len(),
-            off.density, noise.density, off.height, noise.height, x.kinetic, y.kinetic,
+            off.density,
+            noise.density,
+            off.height,
+            noise.height,
+            x.kinetic,
+            y.kinetic,
         );
     }
     speedups.sort_by(f64::total_cmp);
     let mean = free_s / held_s;
-    println!("free {free_s:.2} s, held {held_s:.2} s; speed-up min {:.2} mean {mean:.2} median {:.2} max {:.2}", speedups[0], speedups[n_frames / 2], speedups[n_frames - 1]);
+    println!(
+        "free {free_s:.2} s, held {held_s:.2} s; speed-up min {:.2} mean {mean:.2} median {:.2} max {:.2}",
+        speedups[0],
+        speedups[n_frames / 2],
+        speedups[n_frames - 1]
+    );
     let (error, floor) = (error.root_of_mean(n_frames), floor.root_of_mean(n_frames));
     println!("error {error:?}\nfloor {floor:?}\nerror over floor {:.2}", error.over(&floor));
     Ok(())
