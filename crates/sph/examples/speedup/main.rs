@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release -p sph --example speedup -- block-fall|permanent-flow|dam-break [options]`,
 //! with options `duration=15 frame=0.25 layers=20 v_r=0.05 ratio=2 tau=0.05 inactivity=0
-//! tolerance=0.01 sweep=0.3 law=ramp`.
+//! tolerance=0.01 sweep=0.3 law=ramp twin=1`, the last one the seed of the second free run.
 
 #[path = "../common/cpu_time.rs"]
 mod cpu_time;
@@ -67,7 +67,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         other => return Err(format!("there is no law `{other}`").into()),
     };
     let Scene { fluid: mut free, duration } = options.scene(0)?;
-    let mut twin = options.scene(1)?.fluid;
+    let mut twin = options.scene(options.number("twin", 1.0)? as u64)?.fluid;
     let mut settings = RestraintSettings::of(free.settings());
     let v_r = options.number("v_r", 0.05)?;
     let tau = options.number("tau", 0.05)?;
