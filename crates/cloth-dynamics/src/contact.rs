@@ -59,26 +59,23 @@ pub trait Contact: Send + Sync {
 /// comes with a few times d̂/h.
 pub const STIFFNESS: f64 = 20.0;
 
-/// Share of d̂ below which the barrier is a parabola.
-pub const CORE: f64 = 0.2;
+/// Share of d̂ over which the force of a contact sets in.
+pub const ONSET: f64 = 0.2;
 
-/// The barrier −(d − d̂)² ln(d/d̂) for a gap d below d̂, zero beyond (Li2020 Eq. 6, here of the distance
-/// itself), with its first two derivatives. Energy is this times a stiffness
-/// (N/m). Below [`CORE`] it goes on as a parabola: the gap is a prediction, and a finite energy lets an
-/// iteration come from the wrong side.
+/// The potential of a gap d below d̂, zero beyond, with its first two derivatives; energy is this times
+/// a stiffness (N/m). Its curvature rises from 0 to 1 over the first w = [`ONSET`] d̂ and stays there:
+/// u³/(6w) for a depth u = d̂ − d up to w, and a parabola from there on. So it is convex and finite, and
+/// next to quadratic where it matters: Newton's method needs as few iterations with it as without.
 pub fn barrier(d: f64, d_hat: f64) -> [f64; 3] {
-    if d >= d_hat {
-        return [0.0; 3];
+    let (u, w) = (d_hat - d, ONSET * d_hat);
+    if u <= 0.0 {
+        [0.0; 3]
+    } else if u < w {
+        [u * u * u / (6.0 * w), -u * u / (2.0 * w), u / w]
+    } else {
+        let more = u - w;
+        [w * w / 6.0 + 0.5 * (w + more) * more, -(0.5 * w + more), 1.0]
     }
-    if d < CORE * d_hat {
-        let [energy, slope, curvature] = barrier(CORE * d_hat, d_hat);
-        let deeper = d - CORE * d_hat;
-        let rise = slope * deeper + 0.5 * curvature * deeper * deeper;
-        return [energy + rise, slope + curvature * deeper, curvature];
-    }
-    let (gap, log) = (d - d_hat, (d / d_hat).ln());
-    let ratio = gap / d;
-    [-gap * gap * log, -2.0 * gap * log - gap * ratio, -2.0 * log - 4.0 * ratio + ratio * ratio]
 }
 
 /// Smoothed friction: potential f₀ of a slip `y` (m), its slope f₁ and the slope of that, which is the
@@ -119,6 +116,8 @@ mod tests {
     fn barriers_repel_and_friction_is_smooth() {
         assert_eq!(barrier(1.0, 1.0), [0.0; 3]);
         assert!(barrier(0.5, 1.0)[1] < 0.0 && barrier(-2.0, 1.0)[0] > barrier(-1.0, 1.0)[0]);
+        let [a, b] = [0.800_001, 0.799_999].map(|d| barrier(d, 1.0));
+        assert!((0..3).all(|k| (a[k] - b[k]).abs() < 1e-4), "{a:?} {b:?}");
         let [inside, outside] = [0.999_999, 1.000_001].map(|y| friction(y, 1.0));
         assert!((inside[0] - outside[0]).abs() < 1e-5 && (inside[1] - 1.0).abs() < 1e-5);
         assert_eq!(friction(0.0, 1.0)[1], 0.0);

@@ -129,8 +129,7 @@ impl Bvh {
     /// All pairs `[a, b]`, `a < b`, of elements whose boxes overlap and for which `keep(a, b)` is true,
     /// in ascending order. The filter keeps, for instance, neighbours out.
     pub fn self_pairs(&self, keep: impl Fn(u32, u32) -> bool + Sync) -> Vec<[u32; 2]> {
-        let n_groups = self.len().div_ceil(WIDTH);
-        let pairs = par::collect(n_groups, |group, pairs| {
+        let pairs = par::collect(self.n_groups(), |group, pairs| {
             let own = self.places(group);
             let around = self.around(group);
             self.traverse(&around, group, |other| {
@@ -156,8 +155,7 @@ impl Bvh {
         if other.is_empty() {
             return Vec::new();
         }
-        let n_groups = self.len().div_ceil(WIDTH);
-        let pairs = par::collect(n_groups, |group, pairs| {
+        let pairs = par::collect(self.n_groups(), |group, pairs| {
             let own = self.places(group);
             let around = self.around(group);
             other.traverse(&around, 0, |theirs| {
@@ -174,6 +172,36 @@ impl Bvh {
         sorted(pairs, self.len())
     }
 
+    /// Number of groups of up to four elements: the nodes of level 1.
+    pub(crate) fn n_groups(&self) -> usize {
+        self.len().div_ceil(WIDTH)
+    }
+
+    /// The elements of a group.
+    #[inline]
+    pub(crate) fn elements_of(&self, group: usize) -> &[u32] {
+        &self.order[self.places(group)]
+    }
+
+    /// All pairs `[g, h]`, `g ≤ h`, of groups whose boxes overlap.
+    pub(crate) fn self_groups(&self) -> Vec<[u32; 2]> {
+        par::collect(self.n_groups(), |group, pairs| {
+            let with = self.around(group);
+            self.traverse(&with, group, |other| pairs.push([group as u32, other as u32]));
+        })
+    }
+
+    /// All pairs of a group of this tree and a group of the other one whose boxes overlap.
+    pub(crate) fn groups_with(&self, other: &Bvh) -> Vec<[u32; 2]> {
+        if other.is_empty() {
+            return Vec::new();
+        }
+        par::collect(self.n_groups(), |group, pairs| {
+            let with = self.around(group);
+            other.traverse(&with, 0, |theirs| pairs.push([group as u32, theirs as u32]));
+        })
+    }
+
     /// The places of the elements under node `group` of level 1.
     #[inline]
     fn places(&self, group: usize) -> std::ops::Range<usize> {
@@ -182,7 +210,7 @@ impl Bvh {
 
     /// The box of node `group` of level 1, which a tree of one element does not have.
     #[inline]
-    fn around(&self, group: usize) -> Aabb {
+    pub(crate) fn around(&self, group: usize) -> Aabb {
         self.boxes[self.places(group)].iter().fold(Aabb::EMPTY, |all, b| all.union(b))
     }
 

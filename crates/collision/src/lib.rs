@@ -62,8 +62,10 @@ pub mod contour;
 pub mod distance;
 pub mod intersect;
 mod morton;
+mod near;
 mod pairs;
 pub mod proximity;
+mod rings;
 mod surface;
 pub mod swept;
 

@@ -111,14 +111,37 @@ impl<'a> Body<'a> {
         self.box_around(&self.surface.triangles()[t as usize])
     }
 
-    /// The largest radius of some vertices (m).
     #[inline]
-    fn radius_of(&self, vertices: &[u32]) -> f64 {
-        vertices.iter().map(|&v| (self.radius)(v)).fold(0.0, f64::max)
+    pub(crate) fn x_t0(&self) -> &'a [World3] {
+        self.x_t0
     }
 
     #[inline]
-    fn box_around(&self, vertices: &[u32]) -> Aabb {
+    pub(crate) fn x_t1(&self) -> &'a [World3] {
+        self.x_t1
+    }
+
+    /// The way of a vertex (m).
+    #[inline]
+    pub(crate) fn motion(&self, v: usize) -> World3 {
+        self.x_t1[v] - self.x_t0[v]
+    }
+
+    /// The radius of a vertex (m).
+    #[inline]
+    pub(crate) fn radius(&self, v: u32) -> f64 {
+        (self.radius)(v)
+    }
+
+    /// The largest radius of some vertices (m).
+    #[inline]
+    pub(crate) fn radius_of(&self, vertices: &[u32]) -> f64 {
+        vertices.iter().map(|&v| (self.radius)(v)).fold(0.0, f64::max)
+    }
+
+    /// The box around the way of some vertices, with their room.
+    #[inline]
+    pub(crate) fn box_around(&self, vertices: &[u32]) -> Aabb {
         let of = |x: &'a [World3]| vertices.iter().map(|&v| &x[v as usize]);
         Aabb::around(of(self.x_t0).chain(of(self.x_t1))).grown(self.radius_of(vertices))
     }
@@ -131,6 +154,31 @@ pub(crate) struct Candidate {
     pub(crate) x_t1: [World3; 4],
     /// Sum of the two radii (m).
     pub(crate) thickness: f64,
+}
+
+impl Candidate {
+    /// What the test of a pair of features of two bodies, or of one with itself, needs.
+    #[inline]
+    pub(crate) fn of(pair: Pair, a: Body<'_>, b: Body<'_>) -> Candidate {
+        let vertices = pair.vertices(a.surface, b.surface);
+        let [i, j, k, l] = vertices.map(|v| v as usize);
+        // Without a choice for each vertex, which would cost more than most tests.
+        let of = |front: &[World3], rear: &[World3]| match pair.kind {
+            PairKind::EdgeEdge => [front[i], front[j], rear[k], rear[l]],
+            PairKind::VertexTriangle => [front[i], rear[j], rear[k], rear[l]],
+            PairKind::TriangleVertex => [rear[i], front[j], front[k], front[l]],
+        };
+        let thickness = match (pair.kind, &vertices) {
+            (PairKind::EdgeEdge, [p, q, r, s]) => a.radius_of(&[*p, *q]) + b.radius_of(&[*r, *s]),
+            (PairKind::VertexTriangle, [v, p, q, r]) => {
+                a.radius_of(&[*v]) + b.radius_of(&[*p, *q, *r])
+            }
+            (PairKind::TriangleVertex, [v, p, q, r]) => {
+                b.radius_of(&[*v]) + a.radius_of(&[*p, *q, *r])
+            }
+        };
+        Candidate { pair, x_t0: of(a.x_t0, b.x_t0), x_t1: of(a.x_t1, b.x_t1), thickness }
+    }
 }
 
 /// A body with the boxes of its features: each is asked for many times.
@@ -178,16 +226,15 @@ impl<'a> Features<'a> {
 }
 
 /// What `test` says about all pairs within a body whose boxes overlap, but for those with a vertex in
-/// common, in ascending order of pairs. Only pairs of triangles that `keep` keeps are looked into.
+/// common, in ascending order of pairs.
 pub(crate) fn search_within<T: Send>(
     body: Body<'_>,
     tree: &Bvh,
-    keep: impl Fn(u32, u32) -> bool + Sync,
     test: impl Fn(&Candidate) -> Option<T> + Sync,
 ) -> Vec<(Pair, T)> {
     let own = Features::of(body);
     let surface = body.surface;
-    let triangles = tree.self_pairs(keep);
+    let triangles = tree.self_pairs(|_, _| true);
     let mut found = par::collect(triangles.len(), |i, found| {
         let [a, b] = triangles[i];
         for (owner, other) in [(a, b), (b, a)] {
@@ -215,14 +262,13 @@ pub(crate) fn search_within<T: Send>(
 }
 
 /// What `test` says about all pairs between two bodies whose boxes overlap, in ascending order of
-/// pairs. Only pairs of triangles that `keep` keeps are looked into.
+/// pairs.
 pub(crate) fn search_between<T: Send>(
     (a, tree_a): (Body<'_>, &Bvh),
     (b, tree_b): (Body<'_>, &Bvh),
-    keep: impl Fn(u32, u32) -> bool + Sync,
     test: impl Fn(&Candidate) -> Option<T> + Sync,
 ) -> Vec<(Pair, T)> {
-    let triangles = tree_a.pairs_with(tree_b, keep);
+    let triangles = tree_a.pairs_with(tree_b, |_, _| true);
     if triangles.is_empty() {
         return Vec::new();
     }
@@ -245,54 +291,6 @@ pub(crate) fn search_between<T: Send>(
     found
 }
 
-/// Triangles with what tells quickly that two of them stay apart.
-pub(crate) struct Apart {
-    all: Vec<Moving>,
-}
-
-#[derive(Clone, Copy)]
-struct Moving {
-    x: [World3; 3],
-    /// Three times the centre.
-    centre: World3,
-    motion: World3,
-    /// The radius and by what the corners' motions differ from the mean at most (m).
-    room: f64,
-}
-
-impl Apart {
-    pub(crate) fn of(body: Body<'_>) -> Apart {
-        let zero = World3::zeros();
-        let none = Moving { x: [zero; 3], centre: zero, motion: zero, room: 0.0 };
-        let mut all = vec![none; body.surface.n_triangles()];
-        par::fill(&mut all, |t| {
-            let corners = &body.surface.triangles()[t];
-            let x = corners.map(|v| body.x_t0[v as usize]);
-            let motions = corners.map(|v| body.x_t1[v as usize] - body.x_t0[v as usize]);
-            let motion = (motions[0] + motions[1] + motions[2]) / 3.0;
-            let spread =
-                motions.map(|m| (m - motion).norm_squared()).into_iter().fold(0.0, f64::max);
-            let room = body.radius_of(corners) + spread.sqrt();
-            Moving { x, centre: x[0] + x[1] + x[2], motion, room }
-        });
-        Apart { all }
-    }
-
-    /// True unless triangle `i` and triangle `j` of `other` certainly stay apart by more than their
-    /// radii: a gap along the line of their centres that the relative motion cannot close.
-    #[inline]
-    pub(crate) fn may_meet(&self, i: u32, other: &Apart, j: u32) -> bool {
-        let (a, b) = (&self.all[i as usize], &other.all[j as usize]);
-        let axis = b.centre - a.centre;
-        let [p, q, r] = a.x.map(|x| axis.dot(&x));
-        let [s, t, u] = b.x.map(|x| axis.dot(&x));
-        let gap = s.min(t).min(u) - p.max(q).max(r);
-        let reach = a.room + b.room + (a.motion - b.motion).norm();
-        // The tolerance is far above the rounding of a gap worth the name.
-        !(gap > 0.0 && gap * gap > reach * reach * axis.norm_squared() * (1.0 + 1e-6))
-    }
-}
-
 /// Tests one pair.
 #[inline]
 fn ask<T>(
@@ -302,20 +300,5 @@ fn ask<T>(
     test: &impl Fn(&Candidate) -> Option<T>,
     found: &mut Vec<(Pair, T)>,
 ) {
-    let vertices = pair.vertices(a.surface, b.surface);
-    let [i, j, k, l] = vertices.map(|v| v as usize);
-    // Without a choice for each vertex, which would cost more than most tests.
-    let of = |front: &[World3], rear: &[World3]| match pair.kind {
-        PairKind::EdgeEdge => [front[i], front[j], rear[k], rear[l]],
-        PairKind::VertexTriangle => [front[i], rear[j], rear[k], rear[l]],
-        PairKind::TriangleVertex => [rear[i], front[j], front[k], front[l]],
-    };
-    let thickness = match (pair.kind, &vertices) {
-        (PairKind::EdgeEdge, [p, q, r, s]) => a.radius_of(&[*p, *q]) + b.radius_of(&[*r, *s]),
-        (PairKind::VertexTriangle, [v, p, q, r]) => a.radius_of(&[*v]) + b.radius_of(&[*p, *q, *r]),
-        (PairKind::TriangleVertex, [v, p, q, r]) => b.radius_of(&[*v]) + a.radius_of(&[*p, *q, *r]),
-    };
-    let candidate =
-        Candidate { pair, x_t0: of(a.x_t0, b.x_t0), x_t1: of(a.x_t1, b.x_t1), thickness };
-    found.extend(test(&candidate).map(|answer| (pair, answer)));
+    found.extend(test(&Candidate::of(pair, a, b)).map(|answer| (pair, answer)));
 }

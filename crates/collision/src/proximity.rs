@@ -43,14 +43,14 @@ impl Proximity {
 /// ascending order. Features with a vertex in common are not in contact. The tree is the body's
 /// ([`Body::tree`]); of a moving body, the end of the motion counts.
 pub fn within(body: Body<'_>, tree: &Bvh) -> Vec<Proximity> {
-    let found = search_within(body, tree, |_, _| true, measure);
+    let found = search_within(body, tree, measure);
     found.into_iter().map(|(_, proximity)| proximity).collect()
 }
 
 /// All pairs of a feature of `a` and a feature of `b` with a distance of at most the sum of their
 /// radii, each once, in ascending order. The trees are the bodies'.
 pub fn between(a: (Body<'_>, &Bvh), b: (Body<'_>, &Bvh)) -> Vec<Proximity> {
-    let found = search_between(a, b, |_, _| true, measure);
+    let found = search_between(a, b, measure);
     found.into_iter().map(|(_, proximity)| proximity).collect()
 }
 

@@ -1,5 +1,6 @@
 //! The connectivity that collision needs: triangles, edges, and who owns what.
 
+use crate::rings::Rings;
 use crate::{Aabb, Bvh};
 use mesh_core::World3;
 use thiserror::Error;
@@ -44,6 +45,7 @@ pub struct Surface {
     around: Vec<u32>,
     /// Bits 0–2: corners, bits 3–5: edges that the triangle owns.
     owned: Vec<u8>,
+    rings: Rings,
 }
 
 impl Surface {
@@ -80,6 +82,7 @@ impl Surface {
             starts: Vec::new(),
             around: Vec::with_capacity(sides.len()),
             owned: vec![0; triangles.len()],
+            rings: Rings::new(n_vertices, triangles),
         };
         for same in sides.chunk_by(|a, b| a.0 == b.0) {
             let edge = surface.edges.len() as u32;
@@ -117,6 +120,7 @@ impl Surface {
         all.starts.extend(other.starts.iter().map(|s| s + self.around.len() as u32));
         all.around.extend(other.around.iter().map(|x| x + t));
         all.owned.extend(&other.owned);
+        all.rings.extend(&other.rings, t);
         all
     }
 
@@ -158,6 +162,12 @@ impl Surface {
     pub fn triangles_at(&self, edge: u32) -> &[u32] {
         let e = edge as usize;
         &self.around[self.starts[e] as usize..self.starts[e + 1] as usize]
+    }
+
+    /// What lies around each vertex.
+    #[inline]
+    pub(crate) fn rings(&self) -> &Rings {
+        &self.rings
     }
 
     /// The vertices that a triangle owns.

@@ -1,8 +1,8 @@
-//! Grids, discs, tubes, spheres, boxes and capsules against closed forms.
+//! Grids, discs, tubes, spheres, boxes, capsules and rings against closed forms.
 
 use mesh_core::generate::{
     Diagonal, GenerateError, MAX_SIZE, MAX_TRIANGLES, Sheet, Surface, boundary_chain,
-    boundary_loops, capsule, cuboid, disc, grid, sphere, tube,
+    boundary_loops, capsule, cuboid, disc, grid, sphere, torus, tube,
 };
 use mesh_core::{HalfEdge, Mesh, VertexId, World3, geometry};
 use std::f64::consts::{PI, TAU};
@@ -192,6 +192,36 @@ fn capsules() {
 }
 
 #[test]
+fn rings() {
+    let (radius, tube_radius) = (2.0, 0.5);
+    let mut gaps = Vec::new();
+    for n in [8, 16, 32, 64] {
+        let ring = torus(radius, tube_radius, 2 * n, n).unwrap();
+        assert_eq!((ring.positions.len(), ring.triangles.len()), (2 * n * n, 4 * n * n));
+        for x in &ring.positions {
+            let circle = World3::new(x.x, x.y, 0.0).normalize() * radius;
+            assert!(((x - circle).norm() - tube_radius).abs() < 1e-14, "{x}");
+        }
+        let (volume, area, euler) = measure(&ring);
+        assert_eq!(euler, 0);
+        let circle = TAU * radius;
+        gaps.push([
+            volume / (circle * PI * tube_radius * tube_radius) - 1.0,
+            area / (circle * TAU * tube_radius) - 1.0,
+        ]);
+    }
+    // Second order in the length of a segment, from inside.
+    for pair in gaps.windows(2) {
+        for k in 0..2 {
+            assert!(
+                pair[1][k] < 0.0 && (3.7..4.3).contains(&(pair[0][k] / pair[1][k])),
+                "{gaps:?}"
+            );
+        }
+    }
+}
+
+#[test]
 fn bad_sizes() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-9, 2.0 * MAX_SIZE] {
         let errors = [
@@ -204,6 +234,8 @@ fn bad_sizes() {
             cuboid([1.0, bad, 1.0]).unwrap_err(),
             capsule(bad, 1.0, 8).unwrap_err(),
             capsule(1.0, bad, 8).unwrap_err(),
+            torus(bad, 0.1, 8, 8).unwrap_err(),
+            torus(1.0, bad, 8, 8).unwrap_err(),
         ];
         for error in errors {
             assert!(
@@ -223,7 +255,10 @@ fn bad_counts() {
         tube(1.0, 1.0, 2, 1).unwrap_err(),
         tube(1.0, 1.0, 3, 0).unwrap_err(),
         capsule(1.0, 1.0, 3).unwrap_err(),
+        torus(1.0, 0.5, 2, 8).unwrap_err(),
+        torus(1.0, 0.5, 8, 2).unwrap_err(),
     ];
+    assert!(matches!(torus(1.0, 1.5, 8, 8).unwrap_err(), GenerateError::Size { .. }));
     for error in few {
         assert!(matches!(error, GenerateError::TooFew { .. }), "{error}");
     }
@@ -236,6 +271,7 @@ fn bad_counts() {
         sphere(1.0, 10).unwrap_err(),
         sphere(1.0, huge).unwrap_err(),
         capsule(1.0, 1.0, huge).unwrap_err(),
+        torus(1.0, 0.5, huge, huge).unwrap_err(),
     ];
     for error in many {
         assert!(matches!(error, GenerateError::TooMany { .. }), "{error}");

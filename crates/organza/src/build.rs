@@ -97,6 +97,8 @@ pub struct Garment {
     pub name: String,
     /// Its panels: a range of the mesh's panel numbers.
     pub panels: std::ops::Range<u32>,
+    /// Thickness in contact (m); absent for that of the scene.
+    pub thickness: Option<f64>,
 }
 
 /// All that the scene describes, as one mesh.
@@ -131,7 +133,8 @@ pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
         let piece = piece::piece(cloth, loaded)?;
         let first = fabrics.len() as u32;
         fabrics.extend(fabrics_of_panels(cloth, &piece, &mut warnings)?);
-        garments.push(Garment { name: cloth.name.clone(), panels: first..fabrics.len() as u32 });
+        let (panels, thickness) = (first..fabrics.len() as u32, cloth.thickness_m);
+        garments.push(Garment { name: cloth.name.clone(), panels, thickness });
         let n_triangles = joined.triangles.len() + piece.mesh.n_triangles();
         if n_triangles > limits::MAX_SCENE_TRIANGLES {
             let limit = limits::MAX_SCENE_TRIANGLES;

@@ -16,7 +16,7 @@ use std::path::Path;
 
 use io_mcap::{OwnedGarment, OwnedObstacle, Recording, Status};
 
-use crate::record::{FrameRange, RunError};
+use crate::record::{FrameRange, OBSTACLES, RunError};
 
 /// A format of mesh files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -90,9 +90,9 @@ pub fn export(
 ) -> Result<Written, ExportError> {
     let mut recording = Recording::open(path).map_err(RunError::recording(path))?;
     let frames = selected(&recording, path, range)?;
-    let first = recording.frame(frames[0]).map_err(RunError::recording(path))?;
-    let names: &[&str] =
-        if first.obstacles.is_empty() { &["frame"] } else { &["frame", "obstacles"] };
+    // Obstacles come and go; the recording names all of them.
+    let with_obstacles = recording.metadata().contains_key(OBSTACLES);
+    let names: &[&str] = if with_obstacles { &["frame", "obstacles"] } else { &["frame"] };
     let files = NumberedFiles::prepare(folder, names, format.extension(), &frames, overwrite)?;
     for (k, &index) in frames.iter().enumerate() {
         let frame = recording.frame(index).map_err(RunError::recording(path))?;

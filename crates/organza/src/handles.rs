@@ -22,6 +22,8 @@ pub struct Handle {
     motion: Option<Motion>,
     start: f64,
     end: f64,
+    /// How long springs take to fade after the end (s).
+    fade: f64,
     stiffness: Option<f64>,
 }
 
@@ -34,6 +36,14 @@ enum Extent {
     Border,
     /// An area: new vertices inside it are held.
     Area,
+}
+
+impl Handle {
+    /// Share of the stiffness that is left at a time (s) (1).
+    fn strength(&self, time: f64) -> f64 {
+        let past = time - self.end;
+        if past <= INSTANT { 1.0 } else { (1.0 - past / self.fade).max(0.0).powi(4) }
+    }
 }
 
 /// All handles of a scene.
@@ -74,6 +84,7 @@ impl Handles {
             motion: handle.motion.clone(),
             start: handle.start_s,
             end: handle.end_s,
+            fade: handle.fade_s,
             stiffness: handle.stiffness_n_per_m,
         });
         Ok(())
@@ -107,16 +118,17 @@ impl Handles {
     pub fn constraints(&self, names: &[(u64, u32)], time: f64) -> Constraints {
         let mut out = Constraints::default();
         for handle in &self.handles {
-            if time < handle.start - INSTANT || time > handle.end + INSTANT {
+            if time < handle.start - INSTANT || time > handle.end + handle.fade + INSTANT {
                 continue;
             }
+            let strength = handle.strength(time);
             let moved = handle.motion.as_ref().map(|m| m.at(time) * m.at(handle.start).inverse());
             for &(uid, home) in &handle.held {
                 let (Some(i), Some(home)) = (lookup(names, uid), home) else { continue };
                 let x = moved.map_or(home, |m| m.transform_point(&Point3::from(home)).coords);
                 match handle.stiffness {
                     None => out.fixed.push((i, x)),
-                    Some(k) => out.springs.push((i, x, k)),
+                    Some(k) => out.springs.push((i, x, k * strength)),
                 }
             }
         }

@@ -74,6 +74,7 @@
 
 pub mod arcsim;
 pub mod build;
+pub mod character;
 pub mod checkpoint;
 pub mod contact;
 pub mod export;

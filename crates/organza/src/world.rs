@@ -1,16 +1,18 @@
 //! The world: state and policies of a running scene, and the step.
 
+mod bodies;
 #[cfg(test)]
 mod tests;
 
 use crate::build::{BuildError, Built, Garment, build};
-use crate::contact::{ContactSettings, Crossings, Obstacles, SurfaceContact};
+use crate::contact::{ContactSettings, Crossings, SurfaceContact};
 use crate::handles::{Handles, by_name};
 use crate::obstacle::Obstacle;
 use crate::remeshing::Remeshing;
 use crate::report::{FrameReport, Seconds, StretchRange};
 use crate::scene::format::{Integrator, LinearSolver as Method};
 use crate::scene::{Dialect, Loaded};
+use bodies::{Bodies, appearing_in_cloth};
 use cloth_dynamics::solver::{LinearSettings, LinearSolver, PatternError, SolverKind};
 use cloth_dynamics::{
     Environment, Fabric, ImplicitEuler, NewtonSettings, Sdirk2, SolveError, SolveReport, Step,
@@ -45,6 +47,25 @@ pub enum StepError {
         /// What was too large.
         message: String,
     },
+    /// An obstacle comes where cloth is.
+    #[error(
+        "frame {frame}: obstacle `{obstacle}` appears at {time} s where cloth is: {} edges pass through \
+         triangles, the first at ({:.4}, {:.4}, {:.4}) m",
+        .crossings.n,
+        .crossings.place.x,
+        .crossings.place.y,
+        .crossings.place.z
+    )]
+    InTheWay {
+        /// The frame that was being made.
+        frame: u64,
+        /// Name of the obstacle.
+        obstacle: String,
+        /// Time at the start of the step (s).
+        time: f64,
+        /// What passes through what.
+        crossings: Crossings,
+    },
     /// A remeshing setting is out of range.
     #[error("frame {frame}: {source}")]
     Remesh {
@@ -70,12 +91,12 @@ pub struct World {
     pub handles: Handles,
     /// Which panels belong to which cloth of the scene.
     pub garments: Vec<Garment>,
-    /// Bodies that cloth cannot pass.
+    /// Bodies that cloth cannot pass, those too that are not there yet or any more.
     pub obstacles: Vec<Obstacle>,
     /// How things touch; absent where nothing does.
     pub contact: Option<ContactSettings>,
-    /// The obstacles as the contact sees them.
-    bodies: Option<Obstacles>,
+    /// The obstacles that are there, as the contact sees them.
+    bodies: Bodies,
     /// What the user should know about how the scene was built.
     pub warnings: Vec<String>,
     fabrics: Arc<Vec<Fabric>>,
@@ -128,12 +149,11 @@ impl World {
         let Built { cloth, fabrics, garments, handles, obstacles, contact, mut warnings } = built;
         let (contact, missing) = wanted_contact(contact, &obstacles, loaded.dialect);
         warnings.extend(missing);
-        let bodies = match contact {
-            Some(_) => {
-                Obstacles::new(&obstacles).map_err(|e| BuildError::TooLarge(e.to_string()))?
-            }
-            None => None,
-        };
+        let mut bodies = Bodies::default();
+        if contact.is_some() {
+            let updated = bodies.update(&obstacles, 0.0);
+            updated.map_err(|e| BuildError::TooLarge(e.to_string()))?;
+        }
         let scene = &loaded.scene;
         let settings =
             LinearSettings { tolerance: scene.linear_tolerance, ..LinearSettings::default() };
@@ -284,6 +304,7 @@ impl World {
         seconds: &mut Seconds,
     ) -> Result<(), StepError> {
         let clock = Instant::now();
+        self.bring_obstacles(step, frame)?;
         self.prepare().map_err(|e| StepError::TooLarge { frame, message: e.to_string() })?;
         seconds.build += clock.elapsed().as_secs_f64();
         let Prepared { system, names } = self.prepared.as_mut().expect("prepare() has run");
@@ -315,11 +336,27 @@ impl World {
         }
     }
 
+    /// Brings the obstacles that are there at the end of a step, and takes away the others.
+    fn bring_obstacles(&mut self, step: Step, frame: u64) -> Result<(), StepError> {
+        let Some(settings) = &self.contact else { return Ok(()) };
+        let end = step.time + step.h;
+        let changed = self.bodies.update(&self.obstacles, end);
+        if changed.map_err(|e| StepError::TooLarge { frame, message: e.to_string() })? {
+            self.prepared = None;
+            let (times, time) = ([step.time, end], step.time);
+            let found = appearing_in_cloth(&self.obstacles, &self.cloth, settings, times);
+            if let Some((obstacle, crossings)) = found {
+                return Err(StepError::InTheWay { frame, obstacle, time, crossings });
+            }
+        }
+        Ok(())
+    }
+
     /// What passes through what at the end of a frame; `None` if nothing does, or contact is off.
     pub fn crossings(&self, frame: u64) -> Option<Crossings> {
         let time = frame as f64 * self.frame_s;
         let settings = self.contact.as_ref()?;
-        Crossings::find(&self.cloth, self.bodies.as_ref(), settings, time)
+        Crossings::find(&self.cloth, self.bodies.surface.as_ref(), settings, time)
     }
 
     /// Builds forces, contact, matrix and names if the mesh has changed.
@@ -328,7 +365,12 @@ impl World {
             let h = self.frame_s / f64::from(self.substeps);
             let mut system = System::new(&self.cloth, &self.fabrics, &self.environment, h)?;
             if let Some(settings) = self.contact {
-                let contact = SurfaceContact::new(&self.cloth, self.bodies.as_ref(), settings)?;
+                let contact =
+                    SurfaceContact::new(&self.cloth, self.bodies.surface.as_ref(), settings)?
+                        .with_thickness(&self.cloth, |panel| {
+                            let of = |garment: &&Garment| garment.panels.contains(&panel);
+                            self.garments.iter().find(of).and_then(|garment| garment.thickness)
+                        });
                 system.set_contact(Box::new(contact));
             }
             self.prepared = Some(Prepared { system, names: by_name(&self.cloth.mesh) });

@@ -61,10 +61,10 @@ fn ball(
         }
     }
     let surface = Surface::new(x.len(), &triangles).unwrap();
-    let friction = vec![friction; x.len()];
     Obstacles {
         surface,
-        friction,
+        friction: vec![friction; x.len()],
+        thickness: vec![None; x.len()],
         motion: Arc::new(move |t| x.iter().map(|x| x + way(t)).collect()),
     }
 }
@@ -197,6 +197,7 @@ fn cloth_slips_on_an_incline_where_the_angle_of_friction_is_passed() {
             let obstacles = Obstacles {
                 surface: Surface::new(4, &[[0, 1, 2], [0, 2, 3]]).unwrap(),
                 friction: vec![mu; 4],
+                thickness: vec![None; 4],
                 motion: Arc::new(move |_| plane.clone()),
             };
             let mut cloth = sheet(0.1, 2, World3::new(-0.05, -0.05, 0.9 * THICKNESS));

@@ -138,14 +138,15 @@ fn obstacles_motions_and_contact_are_translated() {
     complains(
         &text(r#""friction": -1, "magic": {"repulsion_thickness": 0},"#)
             .replace("\"motion\": 0", "\"motion\": 3")
-            .replace("{\"mesh\": \"a.obj\"}", "{\"mesh\": \"b.obj\", \"end_time\": 3}"),
+            .replace("\"start_time\": 0", "\"start_time\": 0, \"end_time\": 0")
+            .replace("{\"mesh\": \"a.obj\"}", "{\"mesh\": \"b.obj\"}"),
         &[],
         &[
             "c/s.json:1:116: friction: must be zero or more and finite, got -1",
             "c/s.json:1:153: magic.repulsion_thickness: must be positive and finite, got 0",
             "c/s.json:2:24: obstacles[0].mesh: there is no file `b.obj` among those attached",
-            "c/s.json:2:33: obstacles[0].end_time: not supported yet: obstacles that come and go",
             "c/s.json:3:29: obstacles[1].motion: there is no such motion, the scene has 1",
+            "c/s.json:3:100: obstacles[1].end_time: 0 s is not after the start at 0 s",
         ],
     );
 }
@@ -251,23 +252,21 @@ fn parts_can_be_disabled_and_time_can_be_written_in_two_ways() {
 #[test]
 fn what_is_not_simulated_is_listed_with_its_place() {
     let text = with(
-        r#""obstacles": "o_%d.obj", "morphs": [{}], "motions": {"motfile": "a.mot", "fps": 30},
-"handles": [{"type": "glue", "nodes": [1, 2]}, {"label": 3}, {"nodes": [0], "fade_time": 1, "motion": 4}],
+        r#""motions": [[{"time": 1, "velocity": {"rotate": [9, 0, 0, 1]}}]], "morphs": [{}],
+"handles": [{"type": "glue", "nodes": [1, 2]}, {"label": 3}, {"nodes": [0], "motion": 0}],
 "magic": {"preserve_creases": true, "rib_stiffening": 2},"#,
         "",
-        r#", "yield_curv": 200, "weakening": 0}, {"data": "m.json", "toughness": 1"#,
+        r#", "yield_stretch": 200, "weakening": 0}, {"data": "m.json", "toughness": 1"#,
     );
     let expected = [
-        (1, 36, "obstacles", "obstacles by a file for every frame"),
-        (1, 61, "morphs", "morphs"),
-        (1, 77, "motions", "motion files"),
+        (1, 74, "motions[0][0].velocity.rotate", "keyframes with a spin"),
+        (1, 102, "morphs", "morphs"),
         (2, 14, "handles[0].type", "glue handles"),
         (2, 49, "handles[1].label", "handles by label"),
-        (2, 77, "handles[2].fade_time", "handles that fade"),
         (3, 11, "magic.preserve_creases", "creases kept by remeshing"),
         (3, 37, "magic.rib_stiffening", "rib stiffening"),
-        (5, 19, "cloths[0].materials[0].yield_curv", "plasticity"),
-        (5, 55, "cloths[0].materials[1]", "several materials on one cloth"),
+        (5, 19, "cloths[0].materials[0].yield_stretch", "plasticity"),
+        (5, 58, "cloths[0].materials[1]", "several materials on one cloth"),
     ]
     .map(|(line, column, path, what)| {
         format!("c/s.json:{line}:{column}: {path}: not supported yet: {what}")
@@ -276,7 +275,7 @@ fn what_is_not_simulated_is_listed_with_its_place() {
 
     let loaded = read(&text, &[], true).unwrap_or_else(|errors| panic!("{errors}"));
     let left_out = loaded.warnings.iter().filter(|w| w.kind == IssueKind::Unsupported).count();
-    assert_eq!(left_out, 10);
+    assert_eq!(left_out, 8);
     // The handle on nodes stays.
     assert_eq!(loaded.scene.handles.len(), 1);
     assert_eq!(loaded.scene.handles[0].select, Select::Vertices(vec![0]));

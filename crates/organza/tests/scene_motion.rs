@@ -15,7 +15,7 @@ fn moved(x: f64) -> Transform {
 }
 
 fn motion(interpolation: Interpolation, keys: &[(f64, Transform)]) -> Motion {
-    let keyframes = keys.iter().map(|&(time_s, transform)| Keyframe { time_s, transform });
+    let keyframes = keys.iter().map(|&(time_s, transform)| Keyframe::new(time_s, transform));
     Motion { interpolation, turning: Turning::AxisAngle, keyframes: keyframes.collect() }
 }
 

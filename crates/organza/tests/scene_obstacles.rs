@@ -30,6 +30,7 @@ fn every_kind_of_mesh() {
           {mesh: {plane: {size_m: [4, 6]}}, name: 'floor'},
           {mesh: {capsule: {radius_m: 1, length_m: 3, segments: 8}}},
           {mesh: {obj: 'a.obj'}, transform: {scale: 2, translate: [0, 0, 5]}},
+          {mesh: {torus: {radius_m: 2, tube_radius_m: 0.5, segments: [8, 4]}}},
         ],",
     );
     let expected = [
@@ -38,6 +39,7 @@ fn every_kind_of_mesh() {
         ("floor", 2, [4.0, 6.0, 0.0]),
         ("obstacle3", 64, [2.0, 2.0, 5.0]),
         ("obstacle4", 1, [2.0, 2.0, 0.0]),
+        ("obstacle5", 64, [5.0, 5.0, 1.0]),
     ];
     for (obstacle, (name, n_triangles, size)) in built.obstacles.iter().zip(expected) {
         assert_eq!((obstacle.name.as_str(), obstacle.triangles.len()), (name, n_triangles));
@@ -56,7 +58,7 @@ fn every_kind_of_mesh() {
     }
     assert_eq!(
         built.obstacles.iter().map(|o| o.friction).collect::<Vec<_>>(),
-        [0.3, 0.0, 0.3, 0.3, 0.3]
+        [0.3, 0.0, 0.3, 0.3, 0.3, 0.3]
     );
     // The rectangle faces up.
     let floor = &built.obstacles[2];
@@ -143,8 +145,13 @@ fn bad_obstacles_are_complained_of_at_their_place() {
         "s.json5:2:55: obstacles[0].mesh.capsule.segments: 9e6 triangles is beyond the limit of 4e6 triangles",
     );
     obstacle(
+        "mesh: {torus: {radius_m: 1, tube_radius_m: 1, segments: [2, 3]}}",
+        "s.json5:2:45: obstacles[0].mesh.torus.tube_radius_m: 1 m leaves no hole in a ring of 1 m\n\
+         s.json5:2:59: obstacles[0].mesh.torus.segments[0]: must be at least 3, got 2",
+    );
+    obstacle(
         "mesh: {}",
-        "s.json5:2:8: obstacles[0].mesh: must have exactly one of obj, sphere, box, plane, capsule; has 0",
+        "s.json5:2:8: obstacles[0].mesh: must have exactly one of obj, obj_sequence, gltf, sphere, box, plane, capsule, torus; has 0",
     );
     obstacle(
         "mesh: {obj: 'b.obj'}",

@@ -15,6 +15,7 @@ mod limits;
 mod sew;
 mod skirt;
 mod sphere;
+mod torus;
 mod tube;
 mod tunic;
 
@@ -29,6 +30,7 @@ pub use limits::{MAX_SIZE, MAX_TRIANGLES, MIN_SIZE};
 pub use sew::{Chain, Seam, Sewn, lay_out, sew};
 pub use skirt::{Skirt, skirt};
 pub use sphere::sphere;
+pub use torus::torus;
 pub use tube::tube;
 pub use tunic::{Tunic, poncho, tunic};
 

@@ -66,6 +66,7 @@ pub(super) fn translate(
             stretching: material.stretching_mult.unwrap_or(1.0),
             bending: material.bending_mult.unwrap_or(1.0),
         },
+        thickness_m: None,
         strain_limits: material.strain_limits.filter(|_| !notes.is_disabled("strainlimiting")),
         bending,
         damping: Damping { mass_per_s: 0.0, stiffness_s: material.damping.unwrap_or(0.0) },
@@ -94,8 +95,6 @@ fn check_material(material: &ArcsimMaterial, at: &str, notes: &mut Notes) {
     let is =
         |value: &Option<Value>| value.as_ref().is_some_and(|v| asks(v) && v.as_f64() != Some(0.0));
     let parts = [
-        ("yield_curv", &material.yield_curv, "plasticity"),
-        ("weakening", &material.weakening, "plasticity"),
         ("yield_stretch", &material.yield_stretch, "plasticity"),
         ("plastic_flow", &material.plastic_flow, "plasticity"),
         ("toughness", &material.toughness, "fracture"),
@@ -107,6 +106,11 @@ fn check_material(material: &ArcsimMaterial, at: &str, notes: &mut Notes) {
         ("poisson_ratio", &material.poisson_ratio, "elastic"),
         ("bending_factor", &material.bending_factor, "elastic"),
     ];
+    // Scenes with it are fit to be seen without.
+    if is(&material.yield_curv) && !notes.is_disabled("plasticity") {
+        let message = "plasticity is not simulated: the cloth keeps no creases";
+        notes.notice(&format!("{at}.yield_curv"), message);
+    }
     for (key, value, part) in parts {
         if is(value) && !notes.is_disabled(part) {
             let what = match part {

@@ -1,5 +1,9 @@
 //! The keys of ARCSim's scene files. Kept to what the files say; what it means is in `translate`.
 
+use std::fmt;
+
+use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
+use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -19,11 +23,11 @@ pub(super) struct ArcsimFile {
     pub(super) duration: Option<f64>,
     pub(super) cloths: Vec<ArcsimCloth>,
     #[serde(default)]
-    pub(super) motions: Vec<Vec<ArcsimKeyframe>>,
+    pub(super) motions: ArcsimMotions,
     #[serde(default)]
     pub(super) handles: Vec<ArcsimHandle>,
     #[serde(default)]
-    pub(super) obstacles: Vec<ArcsimObstacle>,
+    pub(super) obstacles: ArcsimObstacles,
     pub(super) morphs: Option<Value>,
     pub(super) gravity: Option<[f64; 3]>,
     pub(super) wind: Option<ArcsimWind>,
@@ -129,12 +133,106 @@ pub(super) struct ArcsimWind {
     pub(super) drag: Option<f64>,
 }
 
+/// Motions: lists of keyframes, or a file.
+#[derive(Debug, Clone, Serialize)]
+#[serde(untagged)]
+pub(super) enum ArcsimMotions {
+    Lists(Vec<Vec<ArcsimKeyframe>>),
+    File(ArcsimMotionFile),
+}
+
+impl Default for ArcsimMotions {
+    fn default() -> Self {
+        Self::Lists(Vec::new())
+    }
+}
+
+impl<'de> Deserialize<'de> for ArcsimMotions {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ListsOrFile;
+        impl<'de> Visitor<'de> for ListsOrFile {
+            type Value = ArcsimMotions;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a list of motions or an object with `motfile`")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, lists: A) -> Result<ArcsimMotions, A::Error> {
+                Deserialize::deserialize(SeqAccessDeserializer::new(lists))
+                    .map(ArcsimMotions::Lists)
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, file: A) -> Result<ArcsimMotions, A::Error> {
+                Deserialize::deserialize(MapAccessDeserializer::new(file)).map(ArcsimMotions::File)
+            }
+
+            fn visit_unit<E: Error>(self) -> Result<ArcsimMotions, E> {
+                Ok(ArcsimMotions::default())
+            }
+        }
+        deserializer.deserialize_any(ListsOrFile)
+    }
+}
+
+/// Motions of several bodies in one file.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ArcsimMotionFile {
+    pub(super) motfile: String,
+    pub(super) fps: f64,
+    /// Applied after the motions.
+    pub(super) transform: Option<ArcsimTransform>,
+}
+
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ArcsimKeyframe {
     pub(super) time: f64,
     pub(super) transform: Option<ArcsimTransform>,
-    pub(super) velocity: Option<Value>,
+    /// Rate of change of the transform.
+    pub(super) velocity: Option<ArcsimTransform>,
+}
+
+/// Obstacles: a list, or a pattern for the names of their files, of which the first has the first
+/// motion and so on.
+#[derive(Debug, Clone, Serialize)]
+#[serde(untagged)]
+pub(super) enum ArcsimObstacles {
+    List(Vec<ArcsimObstacle>),
+    Pattern(String),
+}
+
+impl Default for ArcsimObstacles {
+    fn default() -> Self {
+        Self::List(Vec::new())
+    }
+}
+
+impl<'de> Deserialize<'de> for ArcsimObstacles {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct ListOrPattern;
+        impl<'de> Visitor<'de> for ListOrPattern {
+            type Value = ArcsimObstacles;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a list of obstacles or a pattern for the names of their files")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, list: A) -> Result<ArcsimObstacles, A::Error> {
+                Deserialize::deserialize(SeqAccessDeserializer::new(list))
+                    .map(ArcsimObstacles::List)
+            }
+
+            fn visit_str<E: Error>(self, pattern: &str) -> Result<ArcsimObstacles, E> {
+                Ok(ArcsimObstacles::Pattern(pattern.to_owned()))
+            }
+
+            fn visit_unit<E: Error>(self) -> Result<ArcsimObstacles, E> {
+                Ok(ArcsimObstacles::default())
+            }
+        }
+        deserializer.deserialize_any(ListOrPattern)
+    }
 }
 
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -182,6 +280,11 @@ pub(super) struct Magic {
     pub(super) rib_stiffening: Option<f64>,
     pub(super) combine_tensors: Option<bool>,
     pub(super) preserve_creases: Option<bool>,
-    /// Of version 0.3.
+    // Of version 0.3.
     pub(super) add_jitter: Option<bool>,
+    pub(super) relax_initial_state: Option<bool>,
+    pub(super) relax_method: Option<i64>,
+    pub(super) separation_step_size: Option<f64>,
+    pub(super) max_cracks: Option<i64>,
+    pub(super) enable_localopt: Option<bool>,
 }

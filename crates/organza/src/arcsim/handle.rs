@@ -1,7 +1,7 @@
 //! Handles of ARCSim.
 
-use super::format::{ArcsimHandle, ArcsimKeyframe, Magic};
-use super::motion;
+use super::format::{ArcsimHandle, Magic};
+use super::motion::Motions;
 use super::translate::Notes;
 use crate::scene::format::{ClothRef, HandleFile, Select};
 use crate::scene::typed::suggestion;
@@ -12,7 +12,7 @@ const HANDLE_STIFFNESS_N_PER_M: f64 = 1e3;
 /// Translates the handles on nodes; complains of the others and leaves them out.
 pub(super) fn translate(
     handles: &[ArcsimHandle],
-    motions: &[Vec<ArcsimKeyframe>],
+    motions: &Motions,
     magic: &Magic,
     notes: &mut Notes,
 ) -> Vec<HandleFile> {
@@ -26,21 +26,21 @@ pub(super) fn translate(
             ("select", "nodes"),
             ("start_s", "start_time"),
             ("end_s", "end_time"),
+            ("fade_s", "fade_time"),
         ] {
             notes.rename(&format!("{ours}.{our_key}"), &format!("{theirs}.{their_key}"));
         }
         notes.rename(&format!("{ours}.select.vertices"), &format!("{theirs}.nodes"));
         notes.rename(&format!("{ours}.stiffness_n_per_m"), "magic.handle_stiffness");
-        if handle.fade_time.is_some_and(|seconds| seconds > 0.0) {
-            notes.unsupported(&format!("{theirs}.fade_time"), "handles that fade");
-        }
-        let motion = motion::translate(handle.motion, motions, [&ours, &theirs], notes);
+        let motion = motions.translate(handle.motion, [&ours, &theirs], notes);
         translated.push(HandleFile {
             cloth: ClothRef::Index(handle.cloth.unwrap_or(0)),
             select: Select::Vertices(nodes),
             motion,
             start_s: handle.start_time.unwrap_or(0.0),
             end_s: handle.end_time,
+            // Without an end, nothing fades.
+            fade_s: handle.end_time.and(handle.fade_time).unwrap_or(0.0),
             stiffness_n_per_m: Some(magic.handle_stiffness.unwrap_or(HANDLE_STIFFNESS_N_PER_M)),
         });
     }

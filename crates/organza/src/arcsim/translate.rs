@@ -5,7 +5,9 @@ use serde_json::Value;
 use super::cloth;
 use super::format::{ArcsimFile, Magic};
 use super::handle;
+use super::motion::Motions;
 use super::obstacle;
+use crate::scene::Files;
 use crate::scene::format::{Integrator, Newton, SceneFile, Wind};
 use crate::scene::issue::IssueKind;
 use crate::scene::locate::Part;
@@ -37,8 +39,6 @@ const PARTS: [&str; 9] = [
 pub(super) struct Notes {
     pub(super) complaints: Vec<Complaint>,
     pub(super) renames: Renames,
-    /// Motions stand in a file that is not read; it has been complained of.
-    pub(super) has_motion_file: bool,
     /// The parts that the scene disables.
     disabled: Vec<String>,
 }
@@ -66,7 +66,7 @@ impl Notes {
         self.note(IssueKind::Notice, path, message);
     }
 
-    fn note(&mut self, kind: IssueKind, path: &str, message: impl Into<String>) {
+    pub(super) fn note(&mut self, kind: IssueKind, path: &str, message: impl Into<String>) {
         let path = ValuePath::parse(path).unwrap_or_default();
         self.complaints.push(Complaint { kind, path, part: Part::Value, message: message.into() });
     }
@@ -89,30 +89,25 @@ pub(crate) fn is_arcsim(scene: &Value) -> bool {
 /// places in ARCSim's file. Nothing is returned where the file is too wrong to go on.
 pub(crate) fn read(
     value: &mut Value,
+    files: &mut Files<'_>,
     complaints: &mut Vec<Complaint>,
 ) -> Option<(SceneFile, Renames)> {
     let mut notes = Notes::default();
-    // A motion file would be an object where the lists of keyframes are.
-    if value.get("motions").is_some_and(Value::is_object) {
-        notes.has_motion_file = true;
-        notes.unsupported("motions", "motion files");
-        value["motions"] = Value::Array(Vec::new());
-    }
-    // As may be the name of a file for every frame in the place of the obstacles.
-    if value.get("obstacles").is_some_and(Value::is_string) {
-        notes.unsupported("obstacles", "obstacles by a file for every frame");
-        value["obstacles"] = Value::Array(Vec::new());
-    }
     let arcsim: Option<ArcsimFile> = typed::read(value, complaints);
-    let scene = arcsim.and_then(|arcsim| translate(arcsim, &mut notes));
+    let scene = arcsim.and_then(|arcsim| translate(arcsim, files, &mut notes));
     complaints.append(&mut notes.complaints);
     scene.map(|scene| (scene, notes.renames))
 }
 
-fn translate(arcsim: ArcsimFile, notes: &mut Notes) -> Option<SceneFile> {
+fn translate(
+    mut arcsim: ArcsimFile,
+    files: &mut Files<'_>,
+    notes: &mut Notes,
+) -> Option<SceneFile> {
     check_parts(&arcsim, notes);
     let time = time(&arcsim, notes);
-    let (obstacles, contact) = obstacle::translate(&arcsim, notes);
+    let motions = Motions::read(std::mem::take(&mut arcsim.motions), files, notes);
+    let (obstacles, contact) = obstacle::translate(&arcsim, &motions, files, notes);
     let extras = arcsim.organza;
     // Still air resists motion too: ARCSim's wind has a density even where none is written.
     let wind = arcsim.wind.as_ref();
@@ -121,7 +116,7 @@ fn translate(arcsim: ArcsimFile, notes: &mut Notes) -> Option<SceneFile> {
         density: wind.and_then(|w| w.density).unwrap_or(1.0),
         drag: wind.and_then(|w| w.drag).unwrap_or(0.0),
     };
-    let handles = handle::translate(&arcsim.handles, &arcsim.motions, &arcsim.magic, notes);
+    let handles = handle::translate(&arcsim.handles, &motions, &arcsim.magic, notes);
     let cloths = arcsim.cloths.iter().enumerate();
     let cloths: Vec<_> = cloths
         .map(|(i, cloth)| cloth::translate(cloth, i, extras.bending.unwrap_or_default(), notes))
@@ -231,6 +226,11 @@ fn check_magic(magic: &Magic, notes: &mut Notes) {
         ("preserve_creases", magic.preserve_creases == Some(true), "creases kept by remeshing"),
         ("combine_tensors", magic.combine_tensors == Some(false), "sizing by averaged tensors"),
         ("add_jitter", magic.add_jitter == Some(true), "jitter"),
+        (
+            "relax_initial_state",
+            magic.relax_initial_state == Some(true),
+            "relaxing the initial state",
+        ),
     ];
     for (key, asked, what) in switches {
         if asked {

@@ -1,11 +1,13 @@
 //! The obstacles of a scene: surfaces read from files or generated, with their motions.
 
 use super::BuildError;
-use crate::obstacle::Obstacle;
-use crate::scene::{Loaded, ObstacleSource, limits};
+use crate::character::{self, Container};
+use crate::obstacle::{Frames, Obstacle, Shape};
+use crate::scene::format::Gltf;
+use crate::scene::{Loaded, ObstacleSource, Sequence, limits};
 use mesh_core::World3;
 use mesh_core::generate::{self, Diagonal, GenerateError, Surface};
-use mesh_core::obj;
+use mesh_core::obj::{self, ObjMesh};
 
 /// Builds all obstacles of a scene.
 pub(super) fn obstacles(loaded: &Loaded) -> Result<Vec<Obstacle>, BuildError> {
@@ -13,34 +15,31 @@ pub(super) fn obstacles(loaded: &Loaded) -> Result<Vec<Obstacle>, BuildError> {
     let mut n_triangles = 0;
     for (index, body) in loaded.scene.obstacles.iter().enumerate() {
         let error = |message| BuildError::Obstacle { obstacle: index, message };
-        let surface = surface(&body.mesh, loaded).map_err(error)?;
-        n_triangles += surface.triangles.len();
+        let shape = shape(&body.mesh, loaded).map_err(error)?;
+        let motion = body.motion.as_ref();
+        let name = body.name.as_str();
+        let mut obstacle = Obstacle::new(name, shape, &body.transform, motion, body.friction)
+            .map_err(|e| error(e.to_string()))?;
+        obstacle.thickness = body.thickness_m;
+        n_triangles += obstacle.triangles.len();
         if n_triangles > limits::MAX_SCENE_TRIANGLES {
             let limit = limits::MAX_SCENE_TRIANGLES;
             return Err(error(format!("more than {limit} triangles in all obstacles")));
         }
-        let motion = body.motion.as_ref();
-        let name = body.name.as_str();
-        let obstacle = Obstacle::new(name, surface, &body.transform, motion, body.friction);
-        obstacles.push(obstacle.map_err(|e| error(e.to_string()))?);
+        obstacles.push(obstacle.between(body.start_s, body.end_s));
     }
     Ok(obstacles)
 }
 
 /// Reads or makes the surface of an obstacle.
-fn surface(source: &ObstacleSource, loaded: &Loaded) -> Result<Surface, String> {
+fn shape(source: &ObstacleSource, loaded: &Loaded) -> Result<Shape, String> {
     let generated = |surface: Result<Surface, GenerateError>| surface.map_err(|e| e.to_string());
-    match source {
-        ObstacleSource::Obj(file) => {
-            let read = obj::read(loaded.source(file).unwrap_or_default());
-            let read = read.map_err(|e| format!("{file}: {e}"))?;
-            let twice = |&[a, b, c]: &[u32; 3]| a == b || b == c || c == a;
-            match read.triangles.iter().position(twice) {
-                Some(t) => {
-                    Err(format!("{file}: line {}: a face uses a vertex twice", read.line(t)))
-                }
-                None => Ok(read.to_surface()),
-            }
+    let surface = match source {
+        ObstacleSource::Obj(file) => read_obj(file, loaded).map(|read| read.to_surface()),
+        ObstacleSource::Sequence(sequence) => return frames(sequence, loaded).map(Shape::Frames),
+        ObstacleSource::Gltf(gltf) => {
+            let read = character(gltf, loaded).map_err(|e| format!("{}: {e}", gltf.file));
+            return read.map(Shape::Character);
         }
         ObstacleSource::Sphere(s) => generated(generate::sphere(s.radius_m, s.detail as usize)),
         ObstacleSource::Cuboid(b) => generated(generate::cuboid(b.size_m)),
@@ -54,5 +53,56 @@ fn surface(source: &ObstacleSource, loaded: &Loaded) -> Result<Surface, String> 
         ObstacleSource::Capsule(c) => {
             generated(generate::capsule(c.radius_m, c.length_m, c.segments as usize))
         }
+        ObstacleSource::Torus(t) => {
+            let [around, across] = t.segments.map(|n| n as usize);
+            generated(generate::torus(t.radius_m, t.tube_radius_m, around, across))
+        }
+    };
+    surface.map(Shape::Rigid)
+}
+
+fn read_obj(file: &str, loaded: &Loaded) -> Result<ObjMesh, String> {
+    let read = obj::read(loaded.source(file).unwrap_or_default());
+    let read = read.map_err(|e| format!("{file}: {e}"))?;
+    let twice = |&[a, b, c]: &[u32; 3]| a == b || b == c || c == a;
+    match read.triangles.iter().position(twice) {
+        Some(t) => Err(format!("{file}: line {}: a face uses a vertex twice", read.line(t))),
+        None => Ok(read),
     }
+}
+
+/// Reads an animation, all frames of which must have the vertices and faces of the first.
+fn frames(sequence: &Sequence, loaded: &Loaded) -> Result<Frames, String> {
+    let mut positions = Vec::with_capacity(sequence.files.len());
+    let mut first: Option<ObjMesh> = None;
+    for file in &sequence.files {
+        let read = read_obj(file, loaded)?;
+        if let Some(first) = &first {
+            let name = &sequence.files[0];
+            let (n, expected) = (read.positions.len(), first.positions.len());
+            if n != expected {
+                return Err(format!("{file}: has {n} vertices, and {name} has {expected}"));
+            }
+            let (n, expected) = (read.triangles.len(), first.triangles.len());
+            if n != expected {
+                return Err(format!("{file}: has {n} triangles, and {name} has {expected}"));
+            }
+            let mut pairs = read.triangles.iter().zip(&first.triangles);
+            if let Some(t) = pairs.position(|(a, b)| a != b) {
+                let line = read.line(t);
+                return Err(format!("{file}: line {line}: a face is another than in {name}"));
+            }
+        }
+        positions.push(read.to_surface().positions);
+        first.get_or_insert(read);
+    }
+    let triangles = first.map(|first| first.to_surface().triangles).unwrap_or_default();
+    let (frames_per_second, start) = (sequence.frames_per_second, sequence.start_s);
+    Ok(Frames { triangles, positions, frames_per_second, start })
+}
+
+fn character(gltf: &Gltf, loaded: &Loaded) -> Result<character::Character, String> {
+    let bytes = loaded.source(&gltf.file).unwrap_or_default();
+    let file = Container::new(&gltf.file, bytes, |name| loaded.source(name))?;
+    character::read(&file, gltf.animation.as_ref(), gltf.start_s)
 }

@@ -70,11 +70,12 @@ fn write(out: &mut String, loaded: &Loaded, world: &World) -> fmt::Result {
         let moving = if obstacle.is_moving() { "moving" } else { "still" };
         writeln!(
             out,
-            "obstacle {}: {} vertices, {} faces, {moving}, friction {}",
+            "obstacle {}: {} vertices, {} faces, {moving}, friction {}{}",
             obstacle.name,
             obstacle.n_vertices(),
             obstacle.triangles.len(),
             obstacle.friction,
+            presence(obstacle.times()),
         )?;
     }
     match &world.contact {
@@ -93,6 +94,13 @@ fn write(out: &mut String, loaded: &Loaded, world: &World) -> fmt::Result {
     let wind = scene.wind.as_ref().map_or("none".into(), |w| format!("{:?} m/s", w.velocity));
     writeln!(out, "wind: {wind}")?;
     writeln!(out, "forces: {}", world.force_names().join(", "))
+}
+
+/// When an obstacle is there, if not always.
+fn presence([start, end]: [f64; 2]) -> String {
+    let from = if start > 0.0 { format!(", from {start} s on") } else { String::new() };
+    let until = if end.is_finite() { format!(", until {end} s") } else { String::new() };
+    from + &until
 }
 
 fn options(out: &mut String, cloth: &Cloth) -> fmt::Result {

@@ -40,6 +40,11 @@ pub struct ContactSettings {
 
 /// Share of the thickness below which a gap that no energy keeps open is worth one.
 const OVERLOOKED: f64 = 0.5;
+/// By what the stiffness of things grows at most that are pressed together.
+const MOST_PRESSED: f64 = 10.0;
+/// Speed at which things that are nearer than their thickness go apart at most (m/s): without it,
+/// whatever brings them nearer at once, an impact or an edit of the mesh, would throw them apart.
+const RECOVERY: f64 = 0.1;
 /// Speed below which things stick (m/s).
 const STICK: f64 = 1e-3;
 
@@ -47,6 +52,8 @@ const STICK: f64 = 1e-3;
 pub struct SurfaceContact {
     settings: ContactSettings,
     cloth: Surface,
+    /// Half the thickness around each vertex of the cloth (m).
+    radius: Vec<f64>,
     rest: RestSheet,
     cloth_tree: Bvh,
     obstacles: Option<Moving>,
@@ -80,6 +87,7 @@ impl SurfaceContact {
         Ok(SurfaceContact {
             settings,
             cloth: Surface::new(cloth.mesh.n_vertices(), cloth.mesh.triangles())?,
+            radius: vec![0.5 * settings.thickness; cloth.mesh.n_vertices()],
             rest: RestSheet::new(cloth),
             cloth_tree: Bvh::build(0, |_| Aabb::EMPTY),
             obstacles: obstacles.map(Moving::new),
@@ -96,6 +104,25 @@ impl SurfaceContact {
         })
     }
 
+    /// The same contact, in which panels of the cloth have a thickness of their own (m) where one is
+    /// given: things of two thicknesses keep the mean of them.
+    #[must_use]
+    pub fn with_thickness(
+        mut self,
+        cloth: &ClothState,
+        of_panel: impl Fn(u32) -> Option<f64>,
+    ) -> SurfaceContact {
+        let thickness = |panel| of_panel(panel).unwrap_or(self.settings.thickness);
+        self.radius.fill(f64::INFINITY);
+        for (corners, &panel) in cloth.mesh.triangles().iter().zip(cloth.mesh.panels()) {
+            for &i in corners {
+                let radius = &mut self.radius[i as usize];
+                *radius = radius.min(0.5 * thickness(panel));
+            }
+        }
+        self
+    }
+
     /// The corners of a pair at the start of the stage (m).
     fn corners_now(&self, sides: &Sides, x: &[World3]) -> [World3; 4] {
         sides.corners(x, self.obstacles.as_ref().map_or(&[], |moving| &moving.now))
@@ -106,21 +133,43 @@ impl SurfaceContact {
         sides.corners(x, self.obstacles.as_ref().map_or(&[], |moving| &moving.then))
     }
 
-    /// Stiffness of a pair (N/m).
-    fn stiffness(&self, sides: &Sides) -> f64 {
+    /// Distance below which the things of a pair repel each other (m).
+    fn thickness(&self, sides: &Sides) -> f64 {
+        let radius = |k: usize| {
+            if sides.is_cloth[k] {
+                self.radius[sides.vertices[k] as usize]
+            } else {
+                self.obstacles.as_ref().map_or(0.0, |m| m.radius(sides.vertices[k], &self.settings))
+            }
+        };
+        let largest = |side: bool| {
+            (0..4).filter(|&k| sides.is_first[k] == side).map(radius).fold(0.0, f64::max)
+        };
+        let thickness = largest(true) + largest(false);
+        if sides.is_within_cloth() { thickness.min(self.rest.most(sides)) } else { thickness }
+    }
+
+    /// Stiffness of a pair at some distance (N/m): what has been pressed together resists more.
+    fn stiffness(&self, sides: &Sides, distance: f64) -> f64 {
         let cloth = (0..4).filter(|&k| sides.is_cloth[k]);
         let of = |k: usize| self.inertia[sides.vertices[k] as usize];
-        STIFFNESS * cloth.clone().map(of).sum::<f64>() / cloth.count() as f64
+        let pressed = (sides.thickness / distance).clamp(1.0, MOST_PRESSED);
+        pressed * STIFFNESS * cloth.clone().map(of).sum::<f64>() / cloth.count() as f64
+    }
+
+    /// Gap below which a pair at some distance repels each other in this stage (m).
+    fn reach(&self, sides: &Sides, distance: f64) -> f64 {
+        sides.thickness.min(distance + RECOVERY * self.h)
     }
 
     /// The contact of a pair on the way to `x`, if it comes near on it.
     fn touch(&self, sides: &Sides, start: ClosestPoints, x: &[World3]) -> Option<Touch> {
-        let thickness = sides.thickness;
+        let thickness = self.reach(sides, start.distance);
         let (from, to) = (self.corners_now(sides, &self.x_t0), self.corners_then(sides, x));
         let closest = approach(sides, [&from, &to], start, thickness)?;
         // The distance to the end of an edge is that of a vertex, which has a pair of its own.
         let is_repeated = sides.is_edges && closest.weights.contains(&0.0);
-        let new = || Touch::new(*sides, &closest, &to, thickness, self.stiffness(sides));
+        let new = || Touch::new(*sides, &closest, &to, thickness, self.stiffness(sides, start.distance));
         (!is_repeated).then(new)
     }
 
@@ -134,7 +183,8 @@ impl SurfaceContact {
         }
         let before = moving.map(|moving| (moving.fixed.motion)(times[1] - stage.h));
         for (sides, closest) in near {
-            let [_, slope, _] = barrier(closest.distance, sides.thickness);
+            let reach = self.reach(sides, closest.distance);
+            let [_, slope, _] = barrier(closest.distance, reach);
             let (mut mu, mut way) = (self.settings.friction, World3::zeros());
             if let (Some(moving), Some(before), true) = (moving, &before, !sides.is_within_cloth())
             {
@@ -145,7 +195,7 @@ impl SurfaceContact {
                     way += (moving.then[i] - before[i]) * closest.weights[k];
                 }
             }
-            let most = -slope * self.stiffness(sides) * mu;
+            let most = -slope * self.stiffness(sides, closest.distance) * mu;
             self.slips.extend(Slip::new(*sides, closest, most, way, STICK * stage.h));
         }
         for slip in &mut self.slips {

@@ -1,5 +1,6 @@
 //! The obstacles as contact sees them.
 
+use super::ContactSettings;
 use crate::obstacle::Obstacle;
 use collision::{Bvh, Surface, SurfaceError};
 use mesh_core::World3;
@@ -17,6 +18,8 @@ pub struct Obstacles {
     pub motion: Motion,
     /// Friction coefficient of every triangle's obstacle on cloth, by vertex (1).
     pub friction: Vec<f64>,
+    /// Thickness of every triangle's obstacle, by vertex (m); absent for that of the settings.
+    pub thickness: Vec<Option<f64>>,
 }
 
 impl Obstacles {
@@ -26,7 +29,7 @@ impl Obstacles {
     /// If there are too many triangles.
     pub fn new(obstacles: &[Obstacle]) -> Result<Option<Obstacles>, SurfaceError> {
         let mut surface: Option<Surface> = None;
-        let mut friction = Vec::new();
+        let (mut friction, mut thickness) = (Vec::new(), Vec::new());
         for obstacle in obstacles {
             let n = obstacle.n_vertices();
             let own = Surface::new(n, &obstacle.triangles)?;
@@ -35,10 +38,12 @@ impl Obstacles {
                 Some(others) => others.joined(&own),
             });
             friction.extend(std::iter::repeat_n(obstacle.friction, n));
+            thickness.extend(std::iter::repeat_n(obstacle.thickness, n));
         }
         let bodies = obstacles.to_vec();
         let motion = move |time| bodies.iter().flat_map(|body| body.positions(time)).collect();
-        Ok(surface.map(|surface| Obstacles { surface, friction, motion: Arc::new(motion) }))
+        let motion: Motion = Arc::new(motion);
+        Ok(surface.map(|surface| Obstacles { surface, motion, friction, thickness }))
     }
 }
 
@@ -65,6 +70,11 @@ impl Moving {
             then: Vec::new(),
             times: [f64::NAN; 2],
         }
+    }
+
+    /// Half the thickness around a vertex (m).
+    pub(super) fn radius(&self, v: u32, settings: &ContactSettings) -> f64 {
+        0.5 * self.fixed.thickness[v as usize].unwrap_or(settings.thickness)
     }
 
     /// Goes to the stage between two times (s).

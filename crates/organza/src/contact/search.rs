@@ -27,8 +27,7 @@ impl SurfaceContact {
     /// Finds candidates anew, for this way and for what is near it.
     fn search(&mut self, x: &[World3], x_t1: &[World3]) {
         let skin = SKIN * self.settings.thickness;
-        let half = 0.5 * (self.settings.thickness + skin);
-        let radius = |_: u32| half;
+        let radius = |v: u32| self.radius[v as usize] + 0.5 * skin;
         let mut found: Vec<(usize, Pair, f64)> = Vec::new();
         if self.settings.self_contact {
             // What all of it has in common brings nothing nearer.
@@ -42,14 +41,20 @@ impl SurfaceContact {
             found.extend(pairs.into_iter().map(|(pair, distance)| (0, pair, distance)));
         }
         if let Some(moving) = &mut self.obstacles {
+            let settings = &self.settings;
+            let halves: Vec<f64> = (0..moving.now.len() as u32)
+                .map(|v| moving.radius(v, settings) + 0.5 * skin)
+                .collect();
+            let largest = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
             let around = |points: [&[World3]; 2], room: f64| {
                 Aabb::around(points.into_iter().flatten()).grown(room)
             };
-            let room = self.settings.thickness + skin;
+            let room = largest(&self.radius) + largest(&halves) + 0.5 * skin;
             let is_near =
                 around([x, x_t1], room).overlaps(&around([&moving.now, &moving.then], room));
             if is_near {
-                let other = Body::moving(&moving.fixed.surface, &moving.now, &moving.then, &radius);
+                let room = |v: u32| halves[v as usize];
+                let other = Body::moving(&moving.fixed.surface, &moving.now, &moving.then, &room);
                 if moving.tree_way[0] != moving.now || moving.tree_way[1] != moving.then {
                     other.update_tree(&mut moving.tree);
                     moving.tree_way = [moving.now.clone(), moving.then.clone()];
@@ -80,11 +85,8 @@ impl SurfaceContact {
             Some(moving) if set == 1 => &moving.fixed.surface,
             _ => &self.cloth,
         };
-        let thickness = self.settings.thickness;
-        let mut sides = Sides::new(pair, pair.vertices(&self.cloth, other), set == 0, thickness);
-        if set == 0 {
-            sides.thickness = thickness.min(self.rest.most(&sides));
-        }
+        let mut sides = Sides::new(pair, pair.vertices(&self.cloth, other), set == 0, 0.0);
+        sides.thickness = self.thickness(&sides);
         sides
     }
 }

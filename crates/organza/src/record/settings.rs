@@ -179,6 +179,8 @@ pub(crate) fn up<R: Read + Seek>(recording: &Recording<R>) -> [f64; 3] {
 fn media_type(name: &str) -> &'static str {
     match name.rsplit_once('.').map(|(_, extension)| extension) {
         Some("obj") => "model/obj",
+        Some("glb") => "model/gltf-binary",
+        Some("gltf") => "model/gltf+json",
         Some("json" | "json5") => "application/json",
         _ => "application/octet-stream",
     }

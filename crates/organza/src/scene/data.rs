@@ -1,9 +1,9 @@
 //! A scene that has passed every check: defaults filled in, names and files resolved.
 
 use super::format::{
-    BendingModel, Camera, Capsule, Cuboid, Damping, Disc, Grid, Integrator, LinearSolver,
-    Multipliers, Newton, Plane, Poncho, Recording, Remeshing, Select, Skirt, Sphere, Spin, Tube,
-    Tunic, Wind,
+    BendingModel, Camera, Capsule, Cuboid, Damping, Disc, Gltf, Grid, Integrator, LinearSolver,
+    Multipliers, Newton, Plane, Poncho, Recording, Remeshing, Select, Skirt, Sphere, Spin, Torus,
+    Tube, Tunic, Wind,
 };
 use super::motion::{Motion, Transform};
 use crate::contact::ContactSettings;
@@ -82,6 +82,8 @@ pub struct Cloth {
     pub panel_fabrics: Vec<(String, Fabric)>,
     /// Multipliers of the fabric, `thicken` included.
     pub multipliers: Multipliers,
+    /// Thickness in contact (m); absent for that of the scene.
+    pub thickness_m: Option<f64>,
     /// Smallest and largest principal stretch, min < 1 < max (1).
     pub strain_limits: Option<[f64; 2]>,
     /// How bending is measured.
@@ -134,6 +136,8 @@ pub struct Handle {
     pub start_s: f64,
     /// When it lets go (s); infinite for never.
     pub end_s: f64,
+    /// How long its springs take to fade after that (s).
+    pub fade_s: f64,
     /// Stiffness of the springs (N/m); absent for an exact hold.
     pub stiffness_n_per_m: Option<f64>,
 }
@@ -151,6 +155,12 @@ pub struct Obstacle {
     pub motion: Option<Motion>,
     /// Coefficient of friction between it and cloth (1).
     pub friction: f64,
+    /// Thickness in contact (m); absent for that of the scene.
+    pub thickness_m: Option<f64>,
+    /// When it appears (s); 0 for one that is there from the start.
+    pub start_s: f64,
+    /// When it is gone (s); infinite for never.
+    pub end_s: f64,
 }
 
 /// Where the surface of an obstacle comes from.
@@ -158,6 +168,10 @@ pub struct Obstacle {
 pub enum ObstacleSource {
     /// A Wavefront OBJ file: a key of the loaded sources.
     Obj(String),
+    /// One OBJ file for every frame.
+    Sequence(Sequence),
+    /// A character with a skeleton, from a glTF file.
+    Gltf(Gltf),
     /// A sphere.
     Sphere(Sphere),
     /// A box.
@@ -166,4 +180,17 @@ pub enum ObstacleSource {
     Plane(Plane),
     /// A cylinder with round ends.
     Capsule(Capsule),
+    /// A ring.
+    Torus(Torus),
+}
+
+/// An animation by one OBJ file for every frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sequence {
+    /// The files in order, at least one: keys of the loaded sources.
+    pub files: Vec<String>,
+    /// Frame rate (1/s).
+    pub frames_per_second: f64,
+    /// Time of the first frame (s).
+    pub start_s: f64,
 }

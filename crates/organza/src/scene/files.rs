@@ -1,5 +1,6 @@
 //! Reads the files that a scene names, from the disk or from the attachments of a recording.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -34,34 +35,84 @@ pub struct FileRequest<'a> {
     pub max_bytes: u64,
 }
 
-/// Gives the content of a file named in a scene, or a sentence that says why not.
-pub type Resolver<'a> = dyn Fn(&FileRequest<'_>) -> Result<Vec<u8>, String> + 'a;
+/// Why a file cannot be had; prints as a sentence.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum FileError {
+    /// There is no such file.
+    #[error("{0}")]
+    Missing(String),
+    /// It is there and cannot be read, or is too large.
+    #[error("{0}")]
+    Unreadable(String),
+}
+
+/// Gives the content of a file named in a scene.
+pub type Resolver<'a> = dyn Fn(&FileRequest<'_>) -> Result<Vec<u8>, FileError> + 'a;
+
+/// The files of a scene, each of which is read once.
+pub(crate) struct Files<'r> {
+    pub(crate) dialect: Dialect,
+    resolver: &'r Resolver<'r>,
+    /// The scene, then the files it names in the order in which they were read.
+    sources: Vec<Source>,
+    /// Where in `sources` a name is. The scene is not among them: a file may have its name.
+    by_name: BTreeMap<String, usize>,
+}
+
+impl<'r> Files<'r> {
+    pub(crate) fn new(scene: Source, dialect: Dialect, resolver: &'r Resolver<'r>) -> Self {
+        Self { dialect, resolver, sources: vec![scene], by_name: BTreeMap::new() }
+    }
+
+    /// The content of a file.
+    ///
+    /// # Errors
+    /// It cannot be had.
+    pub(crate) fn read(&mut self, name: &str, max_bytes: u64) -> Result<&[u8], FileError> {
+        let index = match self.by_name.get(name) {
+            Some(&index) => index,
+            None => {
+                let request = FileRequest { name, dialect: self.dialect, max_bytes };
+                let bytes = (self.resolver)(&request)?;
+                self.sources.push(Source { name: name.to_owned(), bytes });
+                self.by_name.insert(name.to_owned(), self.sources.len() - 1);
+                self.sources.len() - 1
+            }
+        };
+        Ok(&self.sources[index].bytes)
+    }
+
+    pub(crate) fn into_sources(self) -> Vec<Source> {
+        self.sources
+    }
+}
 
 /// A resolver that reads from the disk, for a scene that lies in `folder`.
-pub fn from_disk(folder: &Path) -> impl Fn(&FileRequest<'_>) -> Result<Vec<u8>, String> {
+pub fn from_disk(folder: &Path) -> impl Fn(&FileRequest<'_>) -> Result<Vec<u8>, FileError> {
     let folder = folder.to_owned();
     move |request| {
         let places = candidates(&folder, request);
         let Some(path) = places.iter().find(|path| path.is_file()) else {
             let tried: Vec<String> = places.iter().map(|p| p.display().to_string()).collect();
-            return Err(format!(
+            return Err(FileError::Missing(format!(
                 "there is no file `{}` (looked for {})",
                 request.name,
                 tried.join(", ")
-            ));
+            )));
         };
         read_limited(path, request.max_bytes)
-            .map_err(|message| format!("`{}` {message}", path.display()))
+            .map_err(|message| FileError::Unreadable(format!("`{}` {message}", path.display())))
     }
 }
 
 /// A resolver that knows only the files given, such as the attachments of a recording.
-pub fn from_sources(sources: &[Source]) -> impl Fn(&FileRequest<'_>) -> Result<Vec<u8>, String> {
+pub fn from_sources(sources: &[Source]) -> impl Fn(&FileRequest<'_>) -> Result<Vec<u8>, FileError> {
     move |request| {
         let found = sources.iter().find(|source| source.name == request.name);
-        found
-            .map(|source| source.bytes.clone())
-            .ok_or_else(|| format!("there is no file `{}` among those attached", request.name))
+        found.map(|source| source.bytes.clone()).ok_or_else(|| {
+            let name = request.name;
+            FileError::Missing(format!("there is no file `{name}` among those attached"))
+        })
     }
 }
 

@@ -5,6 +5,10 @@
 pub const MAX_TEXT_BYTES: u64 = 64 << 20;
 /// Size of a mesh file (bytes).
 pub const MAX_MESH_BYTES: u64 = 1 << 30;
+/// Frames of an animation by one file for each.
+pub const MAX_SEQUENCE_FRAMES: u32 = 10_000;
+/// Size of a motion file (bytes).
+pub const MAX_MOTION_BYTES: u64 = 256 << 20;
 /// Cloths of a scene.
 pub const MAX_CLOTHS: usize = 10_000;
 /// Handles of a scene.

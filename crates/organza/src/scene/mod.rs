@@ -22,6 +22,7 @@ pub(crate) mod locate;
 pub mod motion;
 pub(crate) mod overrides;
 pub(crate) mod path;
+pub(crate) mod pattern;
 pub(crate) mod places;
 pub(crate) mod read;
 mod resolve;
@@ -30,8 +31,9 @@ pub(crate) mod text;
 pub(crate) mod typed;
 pub(crate) mod unsupported;
 
-pub use data::{Cloth, Handle, MeshSource, Obstacle, ObstacleSource, Scene};
-pub use files::{Dialect, FileRequest, Resolver, Source, from_disk, from_sources};
+pub use data::{Cloth, Handle, MeshSource, Obstacle, ObstacleSource, Scene, Sequence};
+pub(crate) use files::Files;
+pub use files::{Dialect, FileError, FileRequest, Resolver, Source, from_disk, from_sources};
 pub use issue::{Issue, IssueKind, Origin, Position, SceneErrors};
 pub use path::{PathError, Segment, ValuePath};
 pub use places::Places;
@@ -116,8 +118,10 @@ pub fn parse(
 
     let mut complaints = Vec::new();
     let dialect = if arcsim::is_arcsim(&value) { Dialect::Arcsim } else { Dialect::Organza };
+    let source = Source { name: name.to_owned(), bytes: text.as_ref().to_vec() };
+    let mut files = Files::new(source, dialect, resolver);
     let (file, renames) = match dialect {
-        Dialect::Arcsim => arcsim::read(&mut value, &mut complaints).unzip(),
+        Dialect::Arcsim => arcsim::read(&mut value, &mut files, &mut complaints).unzip(),
         Dialect::Organza => {
             unsupported::take(&mut value, &mut complaints);
             (typed::read::<SceneFile>(&mut value, &mut complaints), None)
@@ -131,16 +135,10 @@ pub fn parse(
     places.set_renames(renames.unwrap_or_default());
 
     let complaints = Complaints::default();
-    let mut context = Context {
-        dialect,
-        resolver,
-        complaints: &complaints,
-        foreign: Vec::new(),
-        sources: vec![Source { name: name.to_owned(), bytes: text.as_ref().to_vec() }],
-    };
+    let mut context = Context { files: &mut files, complaints: &complaints, foreign: Vec::new() };
     let default_name = Path::new(name).file_stem().map_or(name.into(), |s| s.to_string_lossy());
     let scene = file.and_then(|file| resolve::resolve(file, &default_name, &mut context));
-    let Context { foreign, sources, .. } = context;
+    let foreign = context.foreign;
     // An object with an unknown key may be wrong as a whole only because of that key.
     let complaints = complaints.into_vec().into_iter().filter(|c| !unknown.contains(&c.path));
     issues.extend(places.resolve_some(complaints));
@@ -154,7 +152,7 @@ pub fn parse(
     });
     match scene {
         Some(scene) if errors.is_empty() => {
-            Ok(Loaded { scene, dialect, warnings, sources, places })
+            Ok(Loaded { scene, dialect, warnings, sources: files.into_sources(), places })
         }
         _ => Err(SceneErrors::new(errors)),
     }

@@ -94,9 +94,31 @@ pub enum Turning {
 pub struct Keyframe {
     /// Time (s).
     pub time_s: f64,
-    /// Transform at that time.
+    /// Transform at that time. In motions of handles the scale may be 0: all points meet there.
     #[serde(default)]
     pub transform: Transform,
+    /// How fast the transform changes at that time, in a smooth motion; absent means as fast as
+    /// between the keyframes beside it, and not at all at both ends of the motion.
+    #[serde(default)]
+    pub velocity: Option<Velocity>,
+}
+
+impl Keyframe {
+    /// A keyframe that a smooth motion passes as its neighbours say.
+    #[must_use]
+    pub fn new(time_s: f64, transform: Transform) -> Self {
+        Self { time_s, transform, velocity: None }
+    }
+}
+
+/// Rate of change of a transform that does not turn.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Velocity {
+    /// Of its offset (m/s).
+    pub translate: [f64; 3],
+    /// Of its factor of enlargement (1/s).
+    pub scale: f64,
 }
 
 impl Motion {
@@ -137,7 +159,10 @@ impl Motion {
     /// Whether the transform changes at all.
     #[must_use]
     pub fn is_moving(&self) -> bool {
-        self.keyframes.windows(2).any(|pair| pair[0].transform != pair[1].transform)
+        let moves = |key: &Keyframe| key.velocity.is_some_and(|v| v != Velocity::default());
+        self.keyframes.windows(2).any(|pair| {
+            pair[0].transform != pair[1].transform || moves(&pair[0]) || moves(&pair[1])
+        })
     }
 
     /// The poses of some keyframes. A quaternion and its negative are one rotation: each is the one
@@ -156,10 +181,13 @@ impl Motion {
         poses
     }
 
-    /// Rate of change at keyframe `at` (1/s times the pose): the slope between its neighbours, zero
-    /// at both ends. `poses` are those from keyframe `first` on.
+    /// Rate of change at keyframe `at` (1/s times the pose): the one it gives, or the slope between
+    /// its neighbours, zero at both ends. `poses` are those from keyframe `first` on.
     fn rate(&self, poses: &[Pose], first: usize, at: usize) -> Pose {
         let keys = &self.keyframes;
+        if let Some(Velocity { translate, scale }) = keys[at].velocity {
+            return Pose { scale, offset: Vector3::from(translate), ..Pose::zero() };
+        }
         if at == 0 || at + 1 == keys.len() {
             return Pose::zero();
         }

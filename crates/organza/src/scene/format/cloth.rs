@@ -33,6 +33,9 @@ pub struct ClothFile {
     /// Multiplies single properties of the fabric.
     #[serde(default)]
     pub multipliers: Multipliers,
+    /// Thickness in contact (m): two things keep the mean of theirs. Absent means that of `contact`.
+    #[serde(default)]
+    pub thickness_m: Option<f64>,
     /// Smallest and largest principal stretch, below and above 1, such as `[0.95, 1.05]`; absent
     /// means no limit (1).
     #[serde(default)]

@@ -26,6 +26,10 @@ pub struct HandleFile {
     /// When it lets go (s); absent means never.
     #[serde(default)]
     pub end_s: Option<f64>,
+    /// How long its springs take to fade away after `end_s` (s): a time t later they have
+    /// (1 − t / `fade_s`)⁴ of their stiffness.
+    #[serde(default)]
+    pub fade_s: f64,
     /// Holds by springs of this stiffness (N/m); absent means exactly.
     #[serde(default)]
     pub stiffness_n_per_m: Option<f64>,

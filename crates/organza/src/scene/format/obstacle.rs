@@ -1,6 +1,9 @@
 //! Obstacles, and how things touch.
 
+use std::fmt;
+
 use schemars::JsonSchema;
+use serde::de::{Deserializer, Error, Visitor};
 use serde::{Deserialize, Serialize};
 
 use super::default;
@@ -25,15 +28,30 @@ pub struct ObstacleFile {
     /// Coefficient of friction between it and cloth (1).
     #[serde(default = "default::friction")]
     pub friction: f64,
+    /// Thickness in contact (m): cloth and obstacle keep the mean of theirs. Absent means that of
+    /// `contact`.
+    #[serde(default)]
+    pub thickness_m: Option<f64>,
+    /// When it appears (s); 0 means that it is there from the start. Cloth must not lie across it
+    /// then.
+    #[serde(default)]
+    pub start_s: f64,
+    /// When it is gone (s); absent means never.
+    #[serde(default)]
+    pub end_s: Option<f64>,
 }
 
-/// Where the surface of an obstacle comes from: exactly one of `obj`, `sphere`, `box`, `plane`,
-/// `capsule`. Cloth is stopped on both sides of open surfaces.
+/// Where the surface of an obstacle comes from: exactly one of `obj`, `obj_sequence`, `gltf`,
+/// `sphere`, `box`, `plane`, `capsule`, `torus`. Cloth is stopped on both sides of open surfaces.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ObstacleMesh {
     /// A Wavefront OBJ file, relative to the scene file; `v` and `f` alone count.
     pub obj: Option<String>,
+    /// An animation by one OBJ file for every frame.
+    pub obj_sequence: Option<ObjSequence>,
+    /// A character with a skeleton, from a glTF 2.0 file.
+    pub gltf: Option<Gltf>,
     /// A sphere around the origin.
     pub sphere: Option<Sphere>,
     /// A box around the origin.
@@ -43,6 +61,89 @@ pub struct ObstacleMesh {
     pub plane: Option<Plane>,
     /// A cylinder with round ends around the origin.
     pub capsule: Option<Capsule>,
+    /// A ring around the z axis.
+    pub torus: Option<Torus>,
+}
+
+/// An animation by one OBJ file for every frame, with straight ways from frame to frame. All have
+/// the vertices and faces of the first in the same order. Before the first frame and after the last
+/// nothing moves.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ObjSequence {
+    /// The files, relative to the scene file, with one place for the number as C's `printf` writes
+    /// it: `walk/body%04d.obj`.
+    pub files: String,
+    /// Numbers of the first and the last frame.
+    pub frames: [u32; 2],
+    /// Frame rate (1/s).
+    pub frames_per_second: f64,
+    /// Time of the first frame (s).
+    #[serde(default)]
+    pub start_s: f64,
+}
+
+/// A character from a glTF 2.0 file (`.glb`, or `.gltf` with its buffers in files or in itself): all
+/// triangles of its scene, moved by its nodes and skins. Its y axis is up, so that most scenes place
+/// it with `rotate: { axis: [1, 0, 0], degrees: 90 }`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Gltf {
+    /// The file, relative to the scene file.
+    pub file: String,
+    /// The animation, by name or by number counted from 0; absent means the first, or none where
+    /// the file has none.
+    #[serde(default)]
+    pub animation: Option<AnimationRef>,
+    /// When the animation begins (s).
+    #[serde(default)]
+    pub start_s: f64,
+}
+
+/// An animation, by name or by number counted from 0.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(untagged)]
+pub enum AnimationRef {
+    /// By number.
+    Index(u32),
+    /// By name.
+    Name(String),
+}
+
+impl<'de> Deserialize<'de> for AnimationRef {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct NameOrIndex;
+        impl Visitor<'_> for NameOrIndex {
+            type Value = AnimationRef;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("the name or the number of an animation")
+            }
+
+            fn visit_u64<E: Error>(self, index: u64) -> Result<AnimationRef, E> {
+                let too_large = |_| E::custom(format!("there is no animation {index}"));
+                u32::try_from(index).map(AnimationRef::Index).map_err(too_large)
+            }
+
+            fn visit_str<E: Error>(self, name: &str) -> Result<AnimationRef, E> {
+                Ok(AnimationRef::Name(name.to_owned()))
+            }
+        }
+        deserializer.deserialize_any(NameOrIndex)
+    }
+}
+
+/// A ring around the z axis, its middle at the origin.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Torus {
+    /// Radius of the circle in the middle of the tube (m).
+    pub radius_m: f64,
+    /// Radius of the tube, less than that of the circle (m).
+    pub tube_radius_m: f64,
+    /// Number of segments around the axis and around the tube, each at least 3.
+    #[serde(default = "default_torus_segments")]
+    pub segments: [u32; 2],
 }
 
 /// A sphere around the origin.
@@ -89,7 +190,8 @@ pub struct Capsule {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ContactFile {
-    /// Distance that is kept between the middle surfaces of things that touch (m).
+    /// Distance that is kept between the middle surfaces of things that touch, where cloths and
+    /// obstacles have no `thickness_m` of their own (m).
     pub thickness_m: f64,
     /// Coefficient of friction of cloth on cloth (1).
     pub friction: f64,
@@ -113,4 +215,8 @@ fn default_detail() -> u32 {
 
 fn default_segments() -> u32 {
     32
+}
+
+fn default_torus_segments() -> [u32; 2] {
+    [48, 16]
 }

@@ -11,7 +11,7 @@ pub(super) fn resolve(
     cloth: ClothFile,
     name: String,
     at: &At<'_>,
-    context: &mut Context<'_>,
+    context: &mut Context<'_, '_>,
 ) -> Option<Cloth> {
     check_factors(&cloth, at);
     let multipliers = Multipliers {
@@ -36,6 +36,9 @@ pub(super) fn resolve(
         panel_fabrics.into_iter().map(|(panel, fabric)| Some((panel, fabric?))).collect();
     let mesh = mesh::resolve(cloth.mesh, &cloth.transform, at, context);
     super::handle::check_transform(&cloth.transform, &at.key("transform"));
+    if let Some(thickness) = cloth.thickness_m {
+        at.key("thickness_m").positive(thickness, limits::MAX_THICKNESS_M, "m");
+    }
     if let Some(limits) = cloth.strain_limits {
         check_strain_limits(limits, &at.key("strain_limits"));
     }
@@ -56,6 +59,7 @@ pub(super) fn resolve(
         fabric: common?,
         panel_fabrics: panel_fabrics?,
         multipliers,
+        thickness_m: cloth.thickness_m,
         strain_limits: cloth.strain_limits,
         bending: cloth.bending,
         damping: cloth.damping,
@@ -88,7 +92,7 @@ fn check_products(fabric: &Fabric, multipliers: Multipliers, at: &At<'_>) {
     }
 }
 
-fn fabric(choice: FabricChoice, at: &At<'_>, context: &mut Context<'_>) -> Option<Fabric> {
+fn fabric(choice: FabricChoice, at: &At<'_>, context: &mut Context<'_, '_>) -> Option<Fabric> {
     if let Some(fabric) = preset(&choice) {
         return Some(Fabric::Orthotropic(fabric));
     }

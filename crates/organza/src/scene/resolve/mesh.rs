@@ -12,7 +12,7 @@ pub(super) fn resolve(
     mesh: MeshFile,
     transform: &Transform,
     cloth: &At<'_>,
-    context: &mut Context<'_>,
+    context: &mut Context<'_, '_>,
 ) -> Option<MeshSource> {
     let at = cloth.key("mesh");
     let MeshFile { obj, material_obj, grid, disc, tube, skirt, tunic, poncho } = mesh;

@@ -1,5 +1,6 @@
 //! From what a scene file says to what it means: every range checked, every name and file found.
 
+mod animated;
 mod cloth;
 mod handle;
 mod mesh;
@@ -7,42 +8,25 @@ mod obstacle;
 
 use super::check::{At, Complaints, beyond};
 use super::data::Scene;
-use super::files::{Dialect, FileRequest, Resolver, Source};
+use super::files::Files;
 use super::format::{Camera, ClothFile, SceneFile, Wind};
 use super::issue::{Issue, IssueKind};
 use super::limits;
 
 /// What resolving needs and collects.
-pub(super) struct Context<'r> {
-    pub(super) dialect: Dialect,
-    pub(super) resolver: &'r Resolver<'r>,
+pub(super) struct Context<'r, 'f> {
+    pub(super) files: &'f mut Files<'r>,
     /// Complaints about the scene file.
-    pub(super) complaints: &'r Complaints,
+    pub(super) complaints: &'f Complaints,
     /// Issues in other files.
     pub(super) foreign: Vec<Issue>,
-    /// The files read so far.
-    pub(super) sources: Vec<Source>,
 }
 
-impl Context<'_> {
+impl Context<'_, '_> {
     /// Reads a file named in the scene, once; a file that cannot be read is complained of at `at`.
     fn read(&mut self, at: &At<'_>, name: &str, max_bytes: u64) -> Option<&[u8]> {
-        // The first is the scene, whose name may be that of a file it names.
-        let mut files = self.sources.iter().enumerate().skip(1);
-        let known = files.find(|(_, source)| source.name == name).map(|(i, _)| i);
-        let index = known.or_else(|| {
-            match (self.resolver)(&FileRequest { name, dialect: self.dialect, max_bytes }) {
-                Ok(bytes) => {
-                    self.sources.push(Source { name: name.to_owned(), bytes });
-                    Some(self.sources.len() - 1)
-                }
-                Err(message) => {
-                    at.report(IssueKind::File, message);
-                    None
-                }
-            }
-        });
-        index.map(|i| self.sources[i].bytes.as_slice())
+        let read = self.files.read(name, max_bytes);
+        read.map_err(|error| at.report(IssueKind::File, error.to_string())).ok()
     }
 }
 
@@ -51,7 +35,7 @@ impl Context<'_> {
 pub(super) fn resolve(
     file: SceneFile,
     default_name: &str,
-    context: &mut Context<'_>,
+    context: &mut Context<'_, '_>,
 ) -> Option<Scene> {
     let top = context.complaints.at_top();
     check_time(&file, &top);

@@ -2,11 +2,12 @@
 
 use super::super::check::At;
 use super::super::data::{Obstacle, ObstacleSource};
-use super::super::format::{Capsule, ContactFile, ObstacleFile, ObstacleMesh, Sphere};
+use super::super::format::{Capsule, ContactFile, ObstacleFile, ObstacleMesh, Sphere, Torus};
 use super::super::limits::{
     MAX_COORDINATE_M, MAX_FRICTION, MAX_MESH_BYTES, MAX_THICKNESS_M, MAX_TRIANGLES,
 };
-use super::handle::{check_motion, check_transform};
+use super::animated;
+use super::handle::{check_motion, check_times, check_transform};
 use super::{Context, beyond, names};
 use crate::contact::ContactSettings;
 
@@ -14,7 +15,7 @@ use crate::contact::ContactSettings;
 pub(super) fn resolve(
     obstacles: Vec<ObstacleFile>,
     at: &At<'_>,
-    context: &mut Context<'_>,
+    context: &mut Context<'_, '_>,
 ) -> Option<Vec<Obstacle>> {
     let names = names(&obstacles, |obstacle| obstacle.name.clone(), "obstacle", at);
     let resolved: Vec<Option<Obstacle>> = obstacles
@@ -50,13 +51,16 @@ fn resolve_one(
     obstacle: ObstacleFile,
     name: String,
     at: &At<'_>,
-    context: &mut Context<'_>,
+    context: &mut Context<'_, '_>,
 ) -> Option<Obstacle> {
     check_transform(&obstacle.transform, &at.key("transform"));
     at.key("friction").not_negative(obstacle.friction, MAX_FRICTION, "");
+    if let Some(thickness) = obstacle.thickness_m {
+        at.key("thickness_m").positive(thickness, MAX_THICKNESS_M, "m");
+    }
     let mut most = 1.0f64;
     if let Some(motion) = &obstacle.motion {
-        check_motion(motion, &at.key("motion"));
+        check_motion(motion, 1.0, &at.key("motion"));
         most = motion.keyframes.iter().map(|key| key.transform.scale).fold(0.0, f64::max);
     }
     let mesh = mesh(obstacle.mesh, &at.key("mesh"), context)?;
@@ -66,35 +70,59 @@ fn resolve_one(
         let reach = beyond(reach, MAX_COORDINATE_M, "m");
         at.key("transform.scale").complain(format!("the obstacle as scaled: {reach}"));
     }
+    check_times(obstacle.start_s, obstacle.end_s, at);
     let (transform, motion, friction) = (obstacle.transform, obstacle.motion, obstacle.friction);
-    Some(Obstacle { name, mesh, transform, motion, friction })
+    let (start_s, end_s) = (obstacle.start_s, obstacle.end_s.unwrap_or(f64::INFINITY));
+    let thickness_m = obstacle.thickness_m;
+    Some(Obstacle { name, mesh, transform, motion, friction, thickness_m, start_s, end_s })
 }
 
 /// Checks the one source that `mesh` names.
-fn mesh(mesh: ObstacleMesh, at: &At<'_>, context: &mut Context<'_>) -> Option<ObstacleSource> {
-    let ObstacleMesh { obj, sphere, cuboid, plane, capsule } = mesh;
+fn mesh(mesh: ObstacleMesh, at: &At<'_>, context: &mut Context<'_, '_>) -> Option<ObstacleSource> {
+    let ObstacleMesh { obj, obj_sequence, gltf, sphere, cuboid, plane, capsule, torus } = mesh;
+    let given = [
+        obj.is_some(),
+        obj_sequence.is_some(),
+        gltf.is_some(),
+        sphere.is_some(),
+        cuboid.is_some(),
+        plane.is_some(),
+        capsule.is_some(),
+        torus.is_some(),
+    ];
+    let n = given.into_iter().filter(|given| *given).count();
+    if n != 1 {
+        at.complain(format!(
+            "must have exactly one of obj, obj_sequence, gltf, sphere, box, plane, capsule, torus; \
+             has {n}"
+        ));
+        return None;
+    }
+    if let Some(sequence) = obj_sequence {
+        let sequence = animated::sequence(&sequence, &at.key("obj_sequence"), context)?;
+        return Some(ObstacleSource::Sequence(sequence));
+    }
     let sources = [
         obj.map(ObstacleSource::Obj),
+        gltf.map(ObstacleSource::Gltf),
         sphere.map(ObstacleSource::Sphere),
         cuboid.map(ObstacleSource::Cuboid),
         plane.map(ObstacleSource::Plane),
         capsule.map(ObstacleSource::Capsule),
+        torus.map(ObstacleSource::Torus),
     ];
-    let mut given = sources.into_iter().flatten();
-    let (first, more) = (given.next(), given.count());
-    let Some(source) = first.filter(|_| more == 0) else {
-        let n = if more == 0 { 0 } else { more + 1 };
-        at.complain(format!("must have exactly one of obj, sphere, box, plane, capsule; has {n}"));
-        return None;
-    };
+    let source = sources.into_iter().flatten().next()?;
     match &source {
         ObstacleSource::Obj(obj) => {
             context.read(&at.key("obj"), obj, MAX_MESH_BYTES)?;
         }
+        ObstacleSource::Gltf(gltf) => animated::read_gltf(gltf, &at.key("gltf"), context)?,
+        ObstacleSource::Sequence(_) => {}
         ObstacleSource::Sphere(sphere) => check_sphere(sphere, &at.key("sphere")),
         ObstacleSource::Cuboid(cuboid) => check_sizes(&cuboid.size_m, &at.key("box.size_m")),
         ObstacleSource::Plane(plane) => check_sizes(&plane.size_m, &at.key("plane.size_m")),
         ObstacleSource::Capsule(capsule) => check_capsule(capsule, &at.key("capsule")),
+        ObstacleSource::Torus(torus) => check_torus(torus, &at.key("torus")),
     }
     Some(source)
 }
@@ -102,11 +130,12 @@ fn mesh(mesh: ObstacleMesh, at: &At<'_>, context: &mut Context<'_>) -> Option<Ob
 /// The largest length in a generated surface (m); 0 for files, whose coordinates are not known yet.
 fn extent(source: &ObstacleSource) -> f64 {
     match source {
-        ObstacleSource::Obj(_) => 0.0,
+        ObstacleSource::Obj(_) | ObstacleSource::Sequence(_) | ObstacleSource::Gltf(_) => 0.0,
         ObstacleSource::Sphere(sphere) => sphere.radius_m,
         ObstacleSource::Cuboid(cuboid) => cuboid.size_m.into_iter().fold(0.0, f64::max),
         ObstacleSource::Plane(plane) => plane.size_m.into_iter().fold(0.0, f64::max),
         ObstacleSource::Capsule(capsule) => capsule.radius_m.max(capsule.length_m),
+        ObstacleSource::Torus(torus) => 2.0 * torus.radius_m,
     }
 }
 
@@ -130,6 +159,24 @@ fn check_capsule(capsule: &Capsule, at: &At<'_>) {
     let segments = at.key("segments");
     segments.at_least(capsule.segments, 4);
     let triangles = f64::from(capsule.segments).powi(2);
+    if triangles > MAX_TRIANGLES {
+        segments.complain(beyond(triangles, MAX_TRIANGLES, "triangles"));
+    }
+}
+
+fn check_torus(torus: &Torus, at: &At<'_>) {
+    at.key("radius_m").size(torus.radius_m);
+    let tube = at.key("tube_radius_m");
+    tube.size(torus.tube_radius_m);
+    if torus.tube_radius_m >= torus.radius_m && torus.radius_m > 0.0 {
+        let (tube_radius, radius) = (torus.tube_radius_m, torus.radius_m);
+        tube.complain(format!("{tube_radius} m leaves no hole in a ring of {radius} m"));
+    }
+    let segments = at.key("segments");
+    for (i, n) in torus.segments.into_iter().enumerate() {
+        segments.index(i).at_least(n, 3);
+    }
+    let triangles = torus.segments.map(f64::from).into_iter().product::<f64>() * 2.0;
     if triangles > MAX_TRIANGLES {
         segments.complain(beyond(triangles, MAX_TRIANGLES, "triangles"));
     }

@@ -1,0 +1,188 @@
+//! Which features may come near each other while everything moves on straight lines.
+//!
+//! Three sieves, each of which keeps all that the next one has to see: groups of four triangles by the
+//! tree, pairs of triangles by common vertices around which nothing is near ([`fans`]) and by separating
+//! axes ([`quads`]), and pairs of features by their distance.
+
+mod fans;
+mod quads;
+
+use crate::pairs::{Body, Candidate, Pair, PairKind};
+use crate::{Aabb, Bvh, distance};
+use mesh_core::{World3, par};
+use quads::{Frame, Quads};
+
+/// As [`near_within`](crate::swept::near_within).
+pub(crate) fn within(body: Body<'_>, tree: &Bvh) -> Vec<(Pair, f64)> {
+    let groups = tree.self_groups();
+    let used: Vec<u32> = (0..tree.n_groups() as u32).collect();
+    let covered = |v: u32| fans::covers(body, v);
+    let quads = Quads::new(body, tree, &used, &Frame::of(&tree.bounds()), covered);
+    let mut pairs = fans::pairs(body);
+    pairs.extend(par::collect(groups.len(), |g, pairs| {
+        let [s, t] = groups[g];
+        let (first, second) = (quads.of(s), quads.of(t));
+        for i in 0..4 {
+            let meets = first.may_meet(i, second);
+            for j in (0..4).filter(|&j| meets[j] && (s != t || i < j)) {
+                pairs.push([first.triangles[i], second.triangles[j]]);
+            }
+        }
+    }));
+    let surface = body.surface();
+    let found = par::collect(pairs.len(), |i, found| {
+        let [a, b] = pairs[i];
+        for (owner, other) in [(a, b), (b, a)] {
+            let corners = surface.triangles()[other as usize];
+            for v in surface.owned_vertices(owner) {
+                if !corners.contains(&v) {
+                    let pair = Pair { kind: PairKind::VertexTriangle, a: v, b: other };
+                    found.extend(near(pair, body, body));
+                }
+            }
+        }
+        for e in surface.owned_edges(a) {
+            let [p, q] = surface.edges()[e as usize];
+            for f in surface.owned_edges(b) {
+                let [r, s] = surface.edges()[f as usize];
+                if (p != r) & (p != s) & (q != r) & (q != s) {
+                    let pair = Pair { kind: PairKind::EdgeEdge, a: e.min(f), b: e.max(f) };
+                    found.extend(near(pair, body, body));
+                }
+            }
+        }
+    });
+    sorted(found)
+}
+
+/// As [`near_between`](crate::swept::near_between).
+pub(crate) fn between(
+    (a, tree_a): (Body<'_>, &Bvh),
+    (b, tree_b): (Body<'_>, &Bvh),
+) -> Vec<(Pair, f64)> {
+    let groups = tree_a.groups_with(tree_b);
+    if groups.is_empty() {
+        return Vec::new();
+    }
+    let used = [0, 1].map(|side| {
+        let mut used: Vec<u32> = groups.iter().map(|pair| pair[side]).collect();
+        used.sort_unstable();
+        used.dedup();
+        used
+    });
+    // Of a large body only a part may be near.
+    let mut bounds = Aabb::EMPTY;
+    for (tree, used) in [(tree_a, &used[0]), (tree_b, &used[1])] {
+        bounds = used.iter().fold(bounds, |all, &g| all.union(&tree.around(g as usize)));
+    }
+    let frame = Frame::of(&bounds);
+    let first = Quads::new(a, tree_a, &used[0], &frame, |_| false);
+    let second = Quads::new(b, tree_b, &used[1], &frame, |_| false);
+    let (surface, other) = (a.surface(), b.surface());
+    let found = par::collect(groups.len(), |g, found| {
+        let (first, second) = (first.of(groups[g][0]), second.of(groups[g][1]));
+        for i in 0..4 {
+            let meets = first.may_meet(i, second);
+            for j in (0..4).filter(|&j| meets[j]) {
+                let (s, t) = (first.triangles[i], second.triangles[j]);
+                for v in surface.owned_vertices(s) {
+                    found.extend(near(Pair { kind: PairKind::VertexTriangle, a: v, b: t }, a, b));
+                }
+                for v in other.owned_vertices(t) {
+                    found.extend(near(Pair { kind: PairKind::TriangleVertex, a: s, b: v }, a, b));
+                }
+                for e in surface.owned_edges(s) {
+                    for f in other.owned_edges(t) {
+                        found.extend(near(Pair { kind: PairKind::EdgeEdge, a: e, b: f }, a, b));
+                    }
+                }
+            }
+        }
+    });
+    sorted(found)
+}
+
+fn sorted(mut found: Vec<(Pair, f64)>) -> Vec<(Pair, f64)> {
+    found.sort_unstable_by_key(|(pair, _)| *pair);
+    found
+}
+
+/// A pair with its distance at the start, if the relative motion can use it up and the swept boxes
+/// overlap.
+#[inline]
+fn near(pair: Pair, a: Body<'_>, b: Body<'_>) -> Option<(Pair, f64)> {
+    let Candidate { x_t0, x_t1, thickness, .. } = &Candidate::of(pair, a, b);
+    let m: [World3; 4] = std::array::from_fn(|k| x_t1[k] - x_t0[k]);
+    let apart = |a: usize, b: usize| (m[a] - m[b]).norm_squared();
+    let is_edges = pair.kind == PairKind::EdgeEdge;
+    let most = if is_edges {
+        apart(0, 2).max(apart(0, 3)).max(apart(1, 2)).max(apart(1, 3))
+    } else {
+        apart(0, 1).max(apart(0, 2)).max(apart(0, 3))
+    };
+    // The tolerance is far above rounding, so that nothing is missed by it.
+    let reach = (most.sqrt() + thickness) * (1.0 + 1e-9);
+    // A gap along the line of points that are nearest if rounding does no harm, which tells most often:
+    // the distance itself, right for all elements, takes several times longer.
+    let axis = if is_edges { between_edges(x_t0) } else { to_triangle(x_t0) };
+    let [p, q, r, s] = x_t0.map(|x| axis.dot(&(x - x_t0[0])));
+    let gap = if is_edges { p.min(q) - r.max(s) } else { p - q.max(r).max(s) };
+    if gap > 0.0 && gap * gap > reach * reach * axis.norm_squared() * (1.0 + 1e-6) {
+        return None;
+    }
+    let squared = if is_edges {
+        distance::edge_edge(x_t0).squared
+    } else {
+        distance::vertex_triangle(x_t0).squared
+    };
+    let is_near = squared <= reach * reach && boxes_overlap(pair, a, b);
+    is_near.then(|| (pair, squared.sqrt()))
+}
+
+/// The way to the first of two edges from the second, roughly: as Ericson2005 §5.1.9.
+#[inline]
+fn between_edges(x: &[World3; 4]) -> World3 {
+    let (d, e, r) = (x[1] - x[0], x[3] - x[2], x[0] - x[2]);
+    let (dd, de, ee) = (d.norm_squared(), d.dot(&e), e.norm_squared());
+    let (dr, er) = (d.dot(&r), e.dot(&r));
+    let s = ((de * er - dr * ee) / (dd * ee - de * de)).clamp(0.0, 1.0);
+    let t = ((de * s + er) / ee).clamp(0.0, 1.0);
+    let s = ((de * t - dr) / dd).clamp(0.0, 1.0);
+    r + d * s - e * t
+}
+
+/// The way to a vertex from a triangle, roughly: from the plane, or from the edge that the vertex is
+/// beyond.
+#[inline]
+fn to_triangle(x: &[World3; 4]) -> World3 {
+    let (e, f, r) = (x[2] - x[1], x[3] - x[1], x[0] - x[1]);
+    let (ee, ef, ff) = (e.norm_squared(), e.dot(&f), f.norm_squared());
+    let (er, fr) = (e.dot(&r), f.dot(&r));
+    let size = ee * ff - ef * ef;
+    // Weights of the second and the third corner, times the size.
+    let (v, w) = (ff * er - ef * fr, ee * fr - ef * er);
+    let u = size - v - w;
+    // The nearest point of the edge across the corner with the least weight, if that is negative.
+    let beyond = |from: &World3, to: &World3| {
+        let (side, way) = (to - from, x[0] - from);
+        way - side * (way.dot(&side) / side.norm_squared()).clamp(0.0, 1.0)
+    };
+    if u.min(v).min(w) >= 0.0 {
+        r - (e * v + f * w) / size
+    } else if u <= v && u <= w {
+        beyond(&x[2], &x[3])
+    } else if v <= w {
+        beyond(&x[1], &x[3])
+    } else {
+        beyond(&x[1], &x[2])
+    }
+}
+
+fn boxes_overlap(pair: Pair, a: Body<'_>, b: Body<'_>) -> bool {
+    let vertices = pair.vertices(a.surface(), b.surface());
+    let front = if pair.kind == PairKind::EdgeEdge { 2 } else { 1 };
+    let (first, second) = vertices.split_at(front);
+    let (first_body, second_body) =
+        if pair.kind == PairKind::TriangleVertex { (b, a) } else { (a, b) };
+    first_body.box_around(first).overlaps(&second_body.box_around(second))
+}
