@@ -98,8 +98,8 @@ fn run() {
     let pairs = tree.self_pairs(|_, _| true).len();
     println!("{} triangles, motion {:.1} mm, {pairs} pairs of boxes", list.len(), motion * 1e3);
     println!("update of the tree {:>9.3} ms", median(|| body.update_tree(&mut tree)) * 1e3);
-    let found = swept::near_within(body, &tree).len();
-    let time = median(|| swept::near_within(body, &tree));
+    let found = swept::near_within(body, &tree, |_, _| f64::INFINITY).len();
+    let time = median(|| swept::near_within(body, &tree, |_, _| f64::INFINITY));
     println!("with itself        {:>9.3} ms, {found} found", time * 1e3);
 
     let body = Body::moving(&surface, &x[0], &x[1], &radius);

@@ -28,9 +28,14 @@ pub fn candidates_between(a: (Body<'_>, &Bvh), b: (Body<'_>, &Bvh)) -> Vec<Pair>
 /// All pairs of features of a body that may come as near as the sum of their radii on the way, however
 /// each of their points goes its part of it at the pace of the others, with their distances at the
 /// start (m), in ascending order; none with a vertex in common. The tree is the body's
-/// ([`Body::tree`]).
-pub fn near_within(body: Body<'_>, tree: &Bvh) -> Vec<(Pair, f64)> {
-    near::within(body, tree)
+/// ([`Body::tree`]). Where `most`, by the [`Pair::vertices`] and the kind of a pair, is less than the
+/// sum of its radii (m), it takes its place.
+pub fn near_within(
+    body: Body<'_>,
+    tree: &Bvh,
+    most: impl Fn(&[u32; 4], PairKind) -> f64 + Sync,
+) -> Vec<(Pair, f64)> {
+    near::within(body, tree, most)
 }
 
 /// All pairs of a feature of `a` and a feature of `b` that may come as near; else as

@@ -21,7 +21,7 @@ impl Moving {
     fn within(&self) -> Vec<(Pair, f64)> {
         let radius = |v: u32| self.radii[v as usize];
         let body = Body::moving(&self.surface, &self.x[0], &self.x[1], &radius);
-        swept::near_within(body, &body.tree())
+        swept::near_within(body, &body.tree(), |_, _| f64::INFINITY)
     }
 
     fn between(&self, other: &Moving) -> Vec<(Pair, f64)> {
@@ -242,7 +242,10 @@ fn the_same_pairs_at_any_number_of_threads_and_after_any_life_of_the_tree() {
             tree = Body::still(&body.surface, &turned, &radius).tree();
             moving.update_tree(&mut tree);
         }
-        (swept::near_within(moving, &tree), swept::near_between((moving, &tree), (moving, &tree)))
+        (
+            swept::near_within(moving, &tree, |_, _| f64::INFINITY),
+            swept::near_between((moving, &tree), (moving, &tree)),
+        )
     };
     let one = par::with_threads(1, || run(false)).unwrap();
     let two = par::with_threads(2, || run(true)).unwrap();

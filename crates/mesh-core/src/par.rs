@@ -35,6 +35,28 @@ pub fn for_each<T: Send>(out: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
     }
 }
 
+/// Calls `f(b, &mut blocks[b], part)` for every block, where `part` is the block's own `size` items of
+/// `out` (fewer for the last one). For blocks that are each worth a task of their own.
+///
+/// # Panics
+/// If there are not as many blocks as parts.
+pub fn blocks<B: Send, T: Send>(
+    blocks: &mut [B],
+    out: &mut [T],
+    size: usize,
+    f: impl Fn(usize, &mut B, &mut [T]) + Sync,
+) {
+    assert_eq!(blocks.len(), out.len().div_ceil(size), "one block per {size} items");
+    if blocks.len() > 1 && rayon::current_num_threads() > 1 {
+        let parts = blocks.par_iter_mut().zip(out.par_chunks_mut(size));
+        parts.enumerate().for_each(|(b, (block, part))| f(b, block, part));
+    } else {
+        for (b, (block, part)) in blocks.iter_mut().zip(out.chunks_mut(size)).enumerate() {
+            f(b, block, part);
+        }
+    }
+}
+
 /// The lists that `f(i, &mut list)` adds to, one after the other in the order of `0..n`: the same
 /// list at any number of threads.
 pub fn collect<T: Send>(n: usize, f: impl Fn(usize, &mut Vec<T>) + Sync) -> Vec<T> {

@@ -58,3 +58,25 @@ fn lists_are_joined_in_order() {
         }
     }
 }
+
+#[test]
+fn blocks_have_their_own_parts() {
+    for n in [0, 1, 7, 8, 9, 1000] {
+        let at = |threads| {
+            let mut out = vec![0; n];
+            let mut firsts = vec![usize::MAX; n.div_ceil(8)];
+            let work = || {
+                par::blocks(&mut firsts, &mut out, 8, |b, first, part| {
+                    *first = b * 8;
+                    part.iter_mut().enumerate().for_each(|(k, slot)| *slot = b * 8 + k);
+                });
+            };
+            par::with_threads(threads, work).unwrap();
+            (firsts, out)
+        };
+        let (firsts, out) = at(2);
+        assert!(out.iter().enumerate().all(|(i, &slot)| i == slot));
+        assert!(firsts.iter().enumerate().all(|(b, &first)| first == b * 8));
+        assert_eq!(at(1), (firsts, out));
+    }
+}

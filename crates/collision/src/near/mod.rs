@@ -13,7 +13,11 @@ use mesh_core::{World3, par};
 use quads::{Frame, Quads};
 
 /// As [`near_within`](crate::swept::near_within).
-pub(crate) fn within(body: Body<'_>, tree: &Bvh) -> Vec<(Pair, f64)> {
+pub(crate) fn within(
+    body: Body<'_>,
+    tree: &Bvh,
+    most: impl Fn(&[u32; 4], PairKind) -> f64 + Sync,
+) -> Vec<(Pair, f64)> {
     let groups = tree.self_groups();
     let used: Vec<u32> = (0..tree.n_groups() as u32).collect();
     let covered = |v: u32| fans::covers(body, v);
@@ -37,7 +41,7 @@ pub(crate) fn within(body: Body<'_>, tree: &Bvh) -> Vec<(Pair, f64)> {
             for v in surface.owned_vertices(owner) {
                 if !corners.contains(&v) {
                     let pair = Pair { kind: PairKind::VertexTriangle, a: v, b: other };
-                    found.extend(near(pair, body, body));
+                    found.extend(near(pair, body, body, &most));
                 }
             }
         }
@@ -47,7 +51,7 @@ pub(crate) fn within(body: Body<'_>, tree: &Bvh) -> Vec<(Pair, f64)> {
                 let [r, s] = surface.edges()[f as usize];
                 if (p != r) & (p != s) & (q != r) & (q != s) {
                     let pair = Pair { kind: PairKind::EdgeEdge, a: e.min(f), b: e.max(f) };
-                    found.extend(near(pair, body, body));
+                    found.extend(near(pair, body, body, &most));
                 }
             }
         }
@@ -79,6 +83,7 @@ pub(crate) fn between(
     let first = Quads::new(a, tree_a, &used[0], &frame, |_| false);
     let second = Quads::new(b, tree_b, &used[1], &frame, |_| false);
     let (surface, other) = (a.surface(), b.surface());
+    let any = |_: &[u32; 4], _: PairKind| f64::INFINITY;
     let found = par::collect(groups.len(), |g, found| {
         let (first, second) = (first.of(groups[g][0]), second.of(groups[g][1]));
         for i in 0..4 {
@@ -86,14 +91,29 @@ pub(crate) fn between(
             for j in (0..4).filter(|&j| meets[j]) {
                 let (s, t) = (first.triangles[i], second.triangles[j]);
                 for v in surface.owned_vertices(s) {
-                    found.extend(near(Pair { kind: PairKind::VertexTriangle, a: v, b: t }, a, b));
+                    found.extend(near(
+                        Pair { kind: PairKind::VertexTriangle, a: v, b: t },
+                        a,
+                        b,
+                        &any,
+                    ));
                 }
                 for v in other.owned_vertices(t) {
-                    found.extend(near(Pair { kind: PairKind::TriangleVertex, a: s, b: v }, a, b));
+                    found.extend(near(
+                        Pair { kind: PairKind::TriangleVertex, a: s, b: v },
+                        a,
+                        b,
+                        &any,
+                    ));
                 }
                 for e in surface.owned_edges(s) {
                     for f in other.owned_edges(t) {
-                        found.extend(near(Pair { kind: PairKind::EdgeEdge, a: e, b: f }, a, b));
+                        found.extend(near(
+                            Pair { kind: PairKind::EdgeEdge, a: e, b: f },
+                            a,
+                            b,
+                            &any,
+                        ));
                     }
                 }
             }
@@ -110,8 +130,14 @@ fn sorted(mut found: Vec<(Pair, f64)>) -> Vec<(Pair, f64)> {
 /// A pair with its distance at the start, if the relative motion can use it up and the swept boxes
 /// overlap.
 #[inline]
-fn near(pair: Pair, a: Body<'_>, b: Body<'_>) -> Option<(Pair, f64)> {
+fn near(
+    pair: Pair,
+    a: Body<'_>,
+    b: Body<'_>,
+    limit: &impl Fn(&[u32; 4], PairKind) -> f64,
+) -> Option<(Pair, f64)> {
     let Candidate { x_t0, x_t1, thickness, .. } = &Candidate::of(pair, a, b);
+    let thickness = thickness.min(limit(&pair.vertices(a.surface(), b.surface()), pair.kind));
     let m: [World3; 4] = std::array::from_fn(|k| x_t1[k] - x_t0[k]);
     let apart = |a: usize, b: usize| (m[a] - m[b]).norm_squared();
     let is_edges = pair.kind == PairKind::EdgeEdge;

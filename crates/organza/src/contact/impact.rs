@@ -62,11 +62,7 @@ impl SurfaceContact {
                 dirty = None;
             }
             let mut hits = self.hits(x_t0, x, dirty.as_deref());
-            if std::env::var("DBG").is_ok() && round > 0 {
-                eprintln!("round {round}: {} hits, searches {}", hits.len(), self.n_searches - n_searches);
-            }
             let Some(first) = hits.first() else {
-                if std::env::var("DBG").is_ok() { eprintln!("searches {} touches {}", self.n_searches, self.touches.len()); self.n_searches = 0; }
                 return Ok(changed.iter().filter(|&&changed| changed).count());
             };
             let blocked = Blocked { place: self.corners_now(&first.sides, x_t0)[0] };

@@ -181,7 +181,12 @@ impl SurfaceContact {
             (0..4).filter(|&k| sides.is_first[k] == side).map(radius).fold(0.0, f64::max)
         };
         let thickness = largest(true) + largest(false);
-        if sides.is_within_cloth() { thickness.min(self.rest.most(sides)) } else { thickness }
+        let n_first = if sides.is_edges { 2 } else { 1 };
+        if sides.is_within_cloth() {
+            thickness.min(self.rest.most(&sides.vertices, n_first))
+        } else {
+            thickness
+        }
     }
 
     /// Stiffness of a pair at some distance (N/m): what has been pressed together resists more.
@@ -204,7 +209,8 @@ impl SurfaceContact {
         let closest = approach(sides, [&from, &to], start, thickness)?;
         // The distance to the end of an edge is that of a vertex, which has a pair of its own.
         let is_repeated = sides.is_edges && closest.weights.contains(&0.0);
-        let new = || Touch::new(*sides, &closest, &to, thickness, self.stiffness(sides, start.distance));
+        let new =
+            || Touch::new(*sides, &closest, &to, thickness, self.stiffness(sides, start.distance));
         (!is_repeated).then(new)
     }
 

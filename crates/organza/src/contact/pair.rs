@@ -28,12 +28,7 @@ pub(super) struct ClosestPoints {
 }
 
 impl Sides {
-    pub(super) fn new(
-        pair: Pair,
-        vertices: [u32; 4],
-        within_cloth: bool,
-        thickness: f64,
-    ) -> Sides {
+    pub(super) fn new(pair: Pair, vertices: [u32; 4], within_cloth: bool, thickness: f64) -> Sides {
         let of_first = pair.of_first();
         let is_edges = pair.kind == PairKind::EdgeEdge;
         let front = if is_edges { 2 } else { 1 };

@@ -1,13 +1,12 @@
 //! How far apart the parts of a garment are at rest: what is close there is not in contact for being
 //! close.
 
-use super::pair::Sides;
-use collision::distance;
-use mesh_core::{ClothState, Material2, World3};
+use mesh_core::{ClothState, Material2};
 
-/// Share of the distance at rest that the thickness of a pair may have: cloth may be compressed, or
-/// folded to an angle of 30°, before it touches itself across a fold.
-const OF_DISTANCE: f64 = 0.5;
+/// Share of the distance at rest between the nearest vertices of a pair that its thickness may have.
+/// In a mesh of triangles whose lowest height is a fifth of their longest edge the pair itself is not
+/// much nearer than that: cloth may be compressed and folded before it touches itself across a fold.
+const OF_DISTANCE: f64 = 0.25;
 /// Share of the lowest height of the triangles around a vertex that its radius may have next to a seam,
 /// where distances in material space mean nothing.
 const OF_HEIGHT: f64 = 0.2;
@@ -52,26 +51,25 @@ impl RestSheet {
         sheet
     }
 
-    /// The most thickness that a pair within the cloth may have (m).
-    pub(super) fn most(&self, sides: &Sides) -> f64 {
-        let vertices = sides.vertices.map(|v| v as usize);
-        let at = vertices.map(|v| &self.place[v]);
+    /// The most thickness that a pair within the cloth may have (m), by its vertices, of which the first
+    /// `n_first` belong to the first part.
+    pub(super) fn most(&self, vertices: &[u32; 4], n_first: usize) -> f64 {
+        let vertices = vertices.map(|v| v as usize);
         if vertices.iter().any(|&v| self.near_seam[v]) {
             let radius = |k: usize| self.radius[vertices[k]];
-            let largest = |first: bool| {
-                (0..4).filter(|&k| sides.is_first[k] == first).map(radius).fold(0.0, f64::max)
-            };
-            largest(true) + largest(false)
-        } else if at.iter().all(|(panel, _)| *panel == at[0].0) {
-            let x = at.map(|(_, at)| World3::new(at.x, at.y, 0.0));
-            let squared = if sides.is_edges {
-                distance::edge_edge(&x).squared
-            } else {
-                distance::vertex_triangle(&x).squared
-            };
-            OF_DISTANCE * squared.sqrt()
-        } else {
-            f64::INFINITY
+            let largest = |of: std::ops::Range<usize>| of.map(radius).fold(0.0, f64::max);
+            return largest(0..n_first) + largest(n_first..4);
         }
+        let at = vertices.map(|v| &self.place[v]);
+        if at.iter().any(|(panel, _)| *panel != at[0].0) {
+            return f64::INFINITY;
+        }
+        let mut nearest = f64::INFINITY;
+        for (_, a) in &at[..n_first] {
+            for (_, b) in &at[n_first..] {
+                nearest = nearest.min((a - b).norm_squared());
+            }
+        }
+        OF_DISTANCE * nearest.sqrt()
     }
 }

@@ -1,12 +1,12 @@
 //! The search for pairs that may touch.
 
-use super::candidates::Candidates;
 use super::{SurfaceContact, pair::Sides};
-use collision::{Aabb, Body, Pair, swept};
+use collision::{Aabb, Body, Pair, PairKind, swept};
 use mesh_core::{World3, par};
 
-/// Share of the thickness by which things may come nearer before candidates are sought anew.
-const SKIN: f64 = 0.3;
+/// Shares of the thickness by which a vertex may be off its expected way before candidates are sought
+/// anew: where all goes as expected, and where much does not.
+const ROOM: [f64; 2] = [0.15, 0.6];
 
 impl SurfaceContact {
     /// Makes the candidates complete for the way of the cloth from `x` to `x_t1` (m), while obstacles go
@@ -26,8 +26,10 @@ impl SurfaceContact {
 
     /// Finds candidates anew, for this way and for what is near it.
     fn search(&mut self, x: &[World3], x_t1: &[World3]) {
-        let skin = SKIN * self.settings.thickness;
-        let radius = |v: u32| self.radius[v as usize] + 0.5 * skin;
+        let [least, most] = ROOM.map(|share| share * self.settings.thickness);
+        self.candidates.learn([x, x_t1], least, most);
+        let off = &self.candidates.room;
+        let radius = |v: u32| self.radius[v as usize] + off[v as usize];
         let mut found: Vec<(usize, Pair, f64)> = Vec::new();
         if self.settings.self_contact {
             // What all of it has in common brings nothing nearer.
@@ -37,19 +39,23 @@ impl SurfaceContact {
             par::fill(&mut end, |i| x_t1[i] - drift);
             let body = Body::moving(&self.cloth, x, &end, &radius);
             body.update_tree(&mut self.cloth_tree);
-            let pairs = swept::near_within(body, &self.cloth_tree);
+            let pairs = swept::near_within(body, &self.cloth_tree, |vertices, kind| {
+                let n_first = if kind == PairKind::EdgeEdge { 2 } else { 1 };
+                let room = |of: &[u32]| of.iter().map(|&v| off[v as usize]).fold(0.0, f64::max);
+                let (first, second) = vertices.split_at(n_first);
+                self.rest.most(vertices, n_first) + room(first) + room(second)
+            });
             found.extend(pairs.into_iter().map(|(pair, distance)| (0, pair, distance)));
         }
         if let Some(moving) = &mut self.obstacles {
             let settings = &self.settings;
-            let halves: Vec<f64> = (0..moving.now.len() as u32)
-                .map(|v| moving.radius(v, settings) + 0.5 * skin)
-                .collect();
+            let halves: Vec<f64> =
+                (0..moving.now.len() as u32).map(|v| moving.radius(v, settings) + least).collect();
             let largest = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
             let around = |points: [&[World3]; 2], room: f64| {
                 Aabb::around(points.into_iter().flatten()).grown(room)
             };
-            let room = largest(&self.radius) + largest(&halves) + 0.5 * skin;
+            let room = largest(&self.radius) + largest(&halves) + most;
             let is_near =
                 around([x, x_t1], room).overlaps(&around([&moving.now, &moving.then], room));
             if is_near {
@@ -72,11 +78,18 @@ impl SurfaceContact {
             let sides = self.sides(set, pair);
             let (from, to) = (self.corners_now(&sides, x), self.corners_then(&sides, x_t1));
             let left = distance - sides.relative_motion(&from, &to);
-            (left <= sides.thickness + skin).then_some(sides)
+            let room = |first: bool| {
+                let of = |k: usize| {
+                    if sides.is_cloth[k] { off[sides.vertices[k] as usize] } else { least }
+                };
+                (0..4).filter(|&k| sides.is_first[k] == first).map(of).fold(0.0, f64::max)
+            };
+            (left <= sides.thickness + room(true) + room(false)).then_some(sides)
         });
         let pairs = pairs.into_iter().flatten().collect();
-        let (now, then) = self.obstacle_way();
-        self.candidates = Candidates::new(pairs, skin, [x, x_t1], [now, then]);
+        let (now, then): (&[World3], &[World3]) =
+            self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then));
+        self.candidates.set(pairs, [x, x_t1], [now, then]);
     }
 
     /// Where things of a pair are: `set` is 0 within the cloth and 1 with obstacles.

@@ -17,6 +17,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("io-mcap", 1),
     ("collision", 1),
     ("sph", 1),
+    ("sph", 1),
     ("sizing-view", 2),
     ("organza", 3),
     // Around the building: they may use everything and nothing uses them.

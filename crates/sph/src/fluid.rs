@@ -1,0 +1,367 @@
+//! A fluid and its time step.
+
+use crate::grid::Point;
+use crate::incremental::{Changes, Update};
+use crate::motion::{Moved, Outside, larger};
+use crate::neighbours::Neighbours;
+use crate::pair::Laws;
+use crate::report::StepReport;
+use crate::restraint::RestraintSettings;
+use crate::settings::{FluidError, FluidSettings};
+use crate::source::{Emitter, Sink};
+use crate::state::{Spare, State};
+use crate::sweep;
+use crate::walls::{WallState, Walls};
+use arps::Restraint;
+use nalgebra::Vector3;
+
+/// Particles of one fluid between walls. `R` is the policy that restrains them; `()` restrains nothing.
+#[derive(Clone, Debug)]
+pub struct Fluid<R = ()> {
+    pub(crate) settings: FluidSettings,
+    pub(crate) laws: Laws,
+    pub(crate) walls: Walls,
+    /// The part of the walls that fluid may touch.
+    pub(crate) touched: WallState,
+    pub(crate) state: State,
+    /// Positions when neighbours were last listed.
+    pub(crate) listed: Vec<Point>,
+    pub(crate) neighbours: Neighbours,
+    pub(crate) restraint: Option<(R, RestraintSettings)>,
+    pub(crate) emitters: Vec<Emitter>,
+    pub(crate) sinks: Vec<Sink>,
+    pub(crate) time: f64,
+    pub(crate) next_id: u64,
+    pub(crate) fastest: f64,
+    pub(crate) hardest: f64,
+    /// At least as far as any particle is from where it was listed (m).
+    pub(crate) farthest: f64,
+    pub(crate) scratch: Scratch,
+}
+
+/// Memory that lives from step to step and holds nothing of use between two.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Scratch {
+    moved: Moved,
+    pub(crate) changes: Changes,
+    order: Vec<u32>,
+    spare: Spare,
+}
+
+impl Fluid {
+    /// A fluid of particles at these positions (m) with these velocities (m/s).
+    ///
+    /// # Errors
+    /// If a setting has no sense, the lists differ in length, or a particle is outside of the domain.
+    pub fn new(
+        settings: FluidSettings,
+        mut walls: Walls,
+        positions: &[Vector3<f64>],
+        velocities: &[Vector3<f64>],
+    ) -> Result<Self, FluidError> {
+        settings.check()?;
+        if velocities.len() != positions.len() {
+            let (found, expected) = (velocities.len(), positions.len());
+            return Err(FluidError::Length { what: "velocities", found, expected });
+        }
+        if positions.len() + walls.n_particles() > (u32::MAX / 4) as usize {
+            return Err(FluidError::TooMany { n: positions.len() });
+        }
+        let laws = Laws::new(&settings);
+        let reach = laws.kernel.support() + settings.skin * settings.spacing;
+        let densities = (laws.mass / settings.spacing.powi(3), settings.rest_density);
+        walls.prepare(&laws.kernel, densities, laws.wall_factor, reach);
+        let mut state = State::default();
+        for (id, (x, v)) in (0..).zip(positions.iter().zip(velocities)) {
+            if !settings.domain.contains(x) || !v.norm().is_finite() {
+                return Err(escaped(id, &[x.x, x.y, x.z, 0.0], v.norm()));
+            }
+            state.push(id, x, v);
+        }
+        let mut fluid = Fluid {
+            next_id: state.len() as u64,
+            settings,
+            laws,
+            walls,
+            touched: WallState::default(),
+            state,
+            listed: Vec::new(),
+            neighbours: Neighbours::default(),
+            restraint: None,
+            emitters: Vec::new(),
+            sinks: Vec::new(),
+            time: 0.0,
+            fastest: velocities.iter().map(Vector3::norm).fold(0.0, f64::max),
+            hardest: 0.0,
+            farthest: 0.0,
+            scratch: Scratch::default(),
+        };
+        fluid.list_neighbours();
+        fluid.evaluate_all();
+        fluid.hardest = hardest(&fluid.state.a);
+        Ok(fluid)
+    }
+}
+
+impl<R: Restraint> Fluid<R> {
+    /// The same fluid under a policy: from the next step on particles move with the effective velocity
+    /// that the policy gives them, and what stands still costs little.
+    ///
+    /// # Errors
+    /// If a setting has no sense.
+    pub fn restrained<Q: Restraint>(
+        self,
+        policy: Q,
+        settings: RestraintSettings,
+    ) -> Result<Fluid<Q>, FluidError> {
+        settings.check()?;
+        Ok(self.with_restraint(Some((policy, settings))))
+    }
+
+    /// The same fluid without any policy.
+    pub fn released(self) -> Fluid {
+        self.with_restraint(None)
+    }
+
+    fn with_restraint<Q>(self, restraint: Option<(Q, RestraintSettings)>) -> Fluid<Q> {
+        Fluid {
+            settings: self.settings,
+            laws: self.laws,
+            walls: self.walls,
+            touched: self.touched,
+            state: self.state,
+            listed: self.listed,
+            neighbours: self.neighbours,
+            restraint,
+            emitters: self.emitters,
+            sinks: self.sinks,
+            time: self.time,
+            next_id: self.next_id,
+            fastest: self.fastest,
+            hardest: self.hardest,
+            farthest: self.farthest,
+            scratch: self.scratch,
+        }
+    }
+
+    /// The longest step that is stable in the present state (s): a part of the time that sound and
+    /// flow take through a smoothing length, and of the time in which the largest acceleration crosses
+    /// it (Monaghan1992 §10.3).
+    pub fn step_bound(&self) -> f64 {
+        let h = self.laws.kernel.smoothing_length();
+        let signal =
+            self.settings.sound_speed * (1.0 + 0.6 * self.settings.viscosity) + self.fastest;
+        let by_sound = self.settings.courant * h / signal;
+        let by_force = 0.25 * (h / self.hardest).sqrt();
+        by_sound.min(by_force)
+    }
+
+    /// Makes one step of `dt` (s): velocities by the present accelerations, then positions by the new
+    /// velocities, then everything that depends on them.
+    ///
+    /// # Errors
+    /// If the step is not positive or longer than [`Fluid::step_bound`], or if a particle leaves the
+    /// domain. The fluid is then as it was.
+    pub fn step(&mut self, dt: f64) -> Result<StepReport, FluidError> {
+        if !(dt.is_finite() && dt > 0.0) {
+            let wanted = "positive and finite";
+            return Err(FluidError::OutOfRange { name: "step", value: dt, wanted });
+        }
+        let bound = self.step_bound();
+        if dt > bound * (1.0 + 1e-12) {
+            return Err(FluidError::StepTooLong { step: dt, bound });
+        }
+        let n = self.state.len();
+        let mut report = StepReport { steps: 1, particles: n as u64, ..StepReport::default() };
+        let half_skin = 0.5 * self.settings.skin * self.settings.spacing;
+        // As far as a particle may be from where it was listed after this step. Listing now saves a sweep
+        // where the next step looks at changes only.
+        let reach = self.farthest + (self.fastest + self.hardest * dt) * dt;
+        if reach > half_skin && self.scratch.changes.is_known(n) {
+            self.list_in_between();
+            report.listings += 1;
+        }
+        self.kick_and_drift(dt)?;
+        self.time += dt;
+        report.moved =
+            if self.restraint.is_some() { self.scratch.moved.movers.len() } else { n } as u64;
+        if self.emit_and_drain(&mut report) || self.farthest > half_skin {
+            self.list_neighbours();
+            self.evaluate_all();
+            report.listings += 1;
+            report.sweeps = 1;
+        } else if !self.evaluate_changes(&mut report) {
+            self.evaluate_all();
+            report.sweeps = 1;
+        }
+        if report.sweeps == 1 {
+            let n_pairs = self.neighbours.n_pairs() as u64;
+            (report.density_pairs, report.force_pairs) = (n_pairs, n_pairs);
+        }
+        self.hardest = hardest(&self.state.a);
+        Ok(report)
+    }
+
+    /// Makes as many steps within the bound as `duration` (s) takes.
+    ///
+    /// # Errors
+    /// As for [`Fluid::step`]; the fluid is then as before the step that failed.
+    pub fn advance(&mut self, duration: f64) -> Result<StepReport, FluidError> {
+        if !(duration.is_finite() && duration >= 0.0) {
+            let wanted = "0 or more and finite";
+            return Err(FluidError::OutOfRange { name: "duration", value: duration, wanted });
+        }
+        let mut report = StepReport::default();
+        let mut left = duration;
+        while left > 0.0 {
+            let n = (left / self.step_bound()).ceil().max(1.0);
+            let dt = left / n;
+            report.add(&self.step(dt)?);
+            left = if n > 1.0 { left - dt } else { 0.0 };
+        }
+        Ok(report)
+    }
+
+    /// New velocities and positions.
+    fn kick_and_drift(&mut self, dt: f64) -> Result<(), FluidError> {
+        let (state, moved) = (&mut self.state, &mut self.scratch.moved);
+        let (listed, domain) = (&self.listed, &self.settings.domain);
+        match &self.restraint {
+            None => moved.free(state, listed, domain, dt),
+            Some(restraint) => {
+                let now = (self.laws.mass, self.time);
+                moved.restrained(restraint, now, state, listed, domain, dt);
+            }
+        }
+        if let Some(Outside { at, x, u }) = &moved.outside {
+            let speed = Vector3::new(u[0], u[1], u[2]).norm();
+            return Err(escaped(state.id[*at], x, speed));
+        }
+        match &self.restraint {
+            None => moved.apply_free(state),
+            Some(_) => moved.apply_restrained(state),
+        }
+        self.fastest = moved.fastest;
+        self.farthest = self.farthest.max(moved.farthest_squared.sqrt());
+        Ok(())
+    }
+
+    /// New and removed particles. Returns true if there are any.
+    fn emit_and_drain(&mut self, report: &mut StepReport) -> bool {
+        let before = self.state.len();
+        for sink in &self.sinks {
+            self.state.retain(|x| !sink.swallows(&Vector3::new(x[0], x[1], x[2])));
+        }
+        let kept = self.state.len();
+        for emitter in &mut self.emitters {
+            let state = &mut self.state;
+            emitter.emit(self.time, self.settings.spacing, |x, v| {
+                state.push(self.next_id, &x, &v);
+                self.next_id += 1;
+                self.fastest = self.fastest.max(v.norm());
+            });
+        }
+        report.drained += (before - kept) as u64;
+        report.emitted += (self.state.len() - kept) as u64;
+        report.drained + report.emitted > 0
+    }
+
+    /// Sorts the particles and lists their neighbours.
+    fn list_neighbours(&mut self) {
+        self.neighbours.sort(&self.state.x, self.reach(), &mut self.scratch.order);
+        self.state.sort(&self.scratch.order, &mut self.scratch.spare);
+        self.listed.clone_from(&self.state.x);
+        self.farthest = 0.0;
+        let reach = self.reach();
+        self.neighbours.list(&self.listed, &self.walls, reach, &mut self.touched);
+    }
+
+    /// The same between two steps: what was computed stays good.
+    fn list_in_between(&mut self) {
+        let known = self.scratch.changes.is_known(self.state.len());
+        self.list_neighbours();
+        if known {
+            self.scratch.changes.evaluated_all(&self.state, &self.touched);
+        }
+    }
+
+    /// Lists neighbours again as they were.
+    pub(crate) fn list_around_listed(&mut self) {
+        let reach = self.reach();
+        self.neighbours.sort(&self.listed, reach, &mut self.scratch.order);
+        self.neighbours.list(&self.listed, &self.walls, reach, &mut self.touched);
+    }
+
+    /// How far from a particle others are listed (m).
+    fn reach(&self) -> f64 {
+        self.laws.kernel.support() + self.settings.skin * self.settings.spacing
+    }
+
+    /// Densities, pressures and accelerations by what the step has changed. Returns false if that is
+    /// so much that everything has to be computed anew.
+    fn evaluate_changes(&mut self, report: &mut StepReport) -> bool {
+        let Some((_, settings)) = &self.restraint else { return false };
+        let n = self.state.len();
+        let (moved, changes) = (&self.scratch.moved, &mut self.scratch.changes);
+        // Nothing held is nothing gained: the bits are then those of a fluid without a policy.
+        let most_movers = settings.sweep_above * n as f64;
+        if !moved.any_held || moved.movers.len() as f64 >= most_movers || !changes.may_try(n) {
+            return false;
+        }
+        let update = Update {
+            laws: &self.laws,
+            walls: &mut self.touched,
+            neighbours: &self.neighbours,
+            state: &mut self.state,
+            movers: &moved.movers,
+            stopped: &moved.stopped,
+            tolerance: settings.pressure_tolerance,
+            changes,
+        };
+        let Some(looked) = update.run() else { return false };
+        report.changed += looked.changed;
+        report.density_pairs += looked.density_pairs;
+        report.force_pairs += looked.force_pairs;
+        true
+    }
+
+    /// Densities, pressures and accelerations of all particles, from nothing but their positions and
+    /// effective velocities.
+    fn evaluate_all(&mut self) {
+        let State { x, w, a, density, .. } = &mut self.state;
+        sweep::densities(&self.laws, x, &mut self.touched, &mut self.neighbours, density);
+        for ((x, w), &density) in x.iter_mut().zip(w.iter_mut()).zip(density.iter()) {
+            x[3] = self.laws.pressure_term(density);
+            w[3] = density;
+        }
+        for (x, &density) in self.touched.x.iter_mut().zip(&self.touched.density) {
+            x[3] = self.laws.pressure_term(density);
+        }
+        sweep::accelerations(&self.laws, x, w, &self.touched, &mut self.neighbours, a);
+        let gravity = self.settings.gravity;
+        for a in a {
+            for k in 0..3 {
+                a[k] += gravity[k];
+            }
+        }
+        if let Some((_, settings)) = &self.restraint {
+            // While most particles move the next step will not look at changes either.
+            let n_movers = self.scratch.moved.movers.len() as f64;
+            if n_movers < settings.sweep_above * self.state.len() as f64 {
+                self.scratch.changes.evaluated_all(&self.state, &self.touched);
+            } else {
+                self.scratch.changes.forget();
+            }
+        }
+    }
+}
+
+/// The greatest acceleration (m/s²).
+fn hardest(a: &[Point]) -> f64 {
+    let squared = |a: &Point| a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
+    a.iter().fold(0.0, |most, a| larger(squared(a), most)).sqrt()
+}
+
+fn escaped(id: u64, x: &Point, speed: f64) -> FluidError {
+    FluidError::Escaped { id, x: x[0], y: x[1], z: x[2], speed }
+}
