@@ -182,8 +182,8 @@ impl World {
             solver: solver.build(settings),
             prepared: None,
         };
+        world.note_tangles();
         if let Some(crossings) = world.crossings(0) {
-            world.note_crossings(Some(&crossings));
             world.warnings.push(World::tangle_warning("in the initial state", &crossings));
         }
         world.prepare().map_err(|e| BuildError::TooLarge(e.to_string()))?;
@@ -286,6 +286,7 @@ impl World {
         }
         self.frame = frame;
         let yielded = self.tangled.yielding.len();
+        self.tangled.was_at_work = self.tangled.matters();
         self.note_crossings(crossings.as_ref());
         seconds.solve(&solve);
         seconds.total = clock.elapsed().as_secs_f64();
@@ -428,6 +429,8 @@ impl World {
         note(self.fabrics.iter().all(|f| f.bending.is_none()), "bending: no fabric resists it");
         note(self.handles.list().is_empty(), "handles: none in the scene");
         note(self.contact.is_none(), "contact: none in the scene");
+        let is_free = self.contact.is_some() && !self.tangled.was_at_work;
+        note(is_free, "untangling: nothing passes through anything");
         skipped
     }
 }

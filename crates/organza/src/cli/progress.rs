@@ -71,6 +71,14 @@ impl Progress {
         }
     }
 
+    /// Warns without disturbing the bar.
+    pub(crate) fn warn(&self, message: &str) {
+        match &self.how {
+            How::Bar(bar) => bar.suspend(|| output::warning(message)),
+            _ => output::warning(message),
+        }
+    }
+
     /// Takes the bar away.
     pub(crate) fn stop(self) {
         if let How::Bar(bar) = self.how {

@@ -86,6 +86,7 @@ pub(crate) fn finish(mut run: Run, quiet: bool) -> Result<(), Failure> {
         match run.next_frame() {
             Ok(Some(report)) => {
                 progress.done(report.frame, || format!("{} faces", report.faces));
+                report.warnings.iter().for_each(|warning| progress.warn(warning));
                 summary.add(&report);
             }
             Ok(None) => break,

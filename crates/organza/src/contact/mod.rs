@@ -142,7 +142,8 @@ impl SurfaceContact {
     /// Finds out what is tangled at the start of a stage.
     fn begin_tangle(&mut self, x_t0: &[World3], duration: f64) {
         let Some(mut tangle) = self.tangle.take() else { return };
-        let (now, then): (&[World3], &[World3]) = self.obstacle_way();
+        let (now, then): (&[World3], &[World3]) =
+            self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then));
         let start = Start {
             x: x_t0,
             obstacles: [now, then],

@@ -16,6 +16,8 @@ const YIELD_GROWTH: f64 = 1.3;
 pub(super) struct Tangled {
     /// Whether any did at the end of the last frame, or does since.
     pub(super) is_so: bool,
+    /// Whether untangling was on in the last frame.
+    pub(super) was_at_work: bool,
     /// Where obstacles let cloth through in this frame: centre and radius (m).
     pub(super) yielding: Vec<(World3, f64)>,
     /// What the user should know of this frame.
@@ -37,6 +39,9 @@ fn at(place: &World3) -> String {
 impl World {
     /// Takes note of what passes through what at the end of the last frame. All that untangling knows
     /// follows from it.
+    ///
+    /// In the initial state, which was made by hand, vertices may lie exactly in other triangles; nothing
+    /// passes through anything then, but where a contour is, it is no less tangled.
     pub(crate) fn note_tangles(&mut self) {
         if self.contact.is_some() {
             // As many obstacles as were counted when the world was built are not too many.
@@ -44,6 +49,9 @@ impl World {
         }
         let crossings = self.crossings(self.frame);
         self.note_crossings(crossings.as_ref());
+        if self.frame == 0 && self.contour_length(0) > 0.0 {
+            self.tangled.is_so = true;
+        }
     }
 
     /// The same, with what was found.

@@ -10,7 +10,7 @@ use nalgebra::Matrix3;
 /// Stiffness in units of the mass of what moves over h².
 const STIFFNESS: f64 = 20.0;
 /// The same across the way: things that cross do not slide about freely.
-const GRIP: f64 = 1.0;
+fn grip() -> f64 { std::env::var("GRIP").map_or(1.0, |g| g.parse().unwrap()) }
 
 /// One crossing on its way.
 pub(in crate::contact) struct Drive {
@@ -46,7 +46,7 @@ impl Drive {
         }
         let direction = want.try_normalize(0.0)?;
         let along = direction * direction.transpose();
-        let stiffness = along * STIFFNESS + (Matrix3::identity() - along) * GRIP;
+        let stiffness = along * STIFFNESS + (Matrix3::identity() - along) * grip();
         (mobility > 0.0).then(|| Drive { parts, offset, want, stiffness: stiffness / mobility })
     }
 

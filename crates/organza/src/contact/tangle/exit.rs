@@ -76,13 +76,15 @@ impl Exit {
                 let extent = near(plug, 0.0);
                 let size = extent.extent();
                 let with_ring = sorted([plug, &sides[side]].concat());
-                let (triangles, wall) = around(
-                    surface,
-                    x,
-                    &traces.triangles[1 - side],
-                    &extent.grown(size + 2.0 * way),
-                    &with_ring,
-                );
+                let beyond = extent.grown(size + 2.0 * way);
+                let (triangles, _) =
+                    around(surface, x, &traces.triangles[1 - side], &beyond, &with_ring);
+                let beside = near(&with_ring, 2.0 * way);
+                let wall = triangles
+                    .iter()
+                    .filter(|&&t| surface.triangle_box(x, t).overlaps(&beside))
+                    .flat_map(|&t| surface.triangles()[t as usize]);
+                let wall = sorted(wall.collect());
                 let mean_normal: World3 =
                     traces.triangles[1 - side].iter().map(|&t| normal(surface, x, t)).sum();
                 let Some((distance, direction)) =
