@@ -1,9 +1,14 @@
 //! Tangled starts come apart: cloth that passes through itself, other cloth, or obstacles.
 
-use mesh_core::World3;
+use cloth_dynamics::Stage;
+use cloth_dynamics::contact::Contact;
+use cloth_dynamics::solver::{BlockMatrix, PatternBuilder};
+use mesh_core::{World3, par};
 use organza::checkpoint;
+use organza::contact::SurfaceContact;
 use organza::scene::{LoadOptions, from_sources, parse};
 use organza::world::World;
+use std::sync::Arc;
 
 /// The most frames that a tangle may take.
 const FRAMES: usize = 50;
@@ -90,19 +95,26 @@ fn tangles() -> Vec<(String, World)> {
     all.push(("corner".into(), corner));
     let body = format!("gravity: [0, 0, 0], contact: {{}}, cloths: [{}, {}]", flat(1.0, 20, [0.0; 3]), sheet([0.6, 0.6], [12, 12], [0.61, 0.013, 0.003], x, 80.0));
     all.push(("slits at a boundary".into(), world(&body)));
-    // A bump pushed through a lying sheet: closed contour.
+    // A bump through a lying sheet: closed contours.
     let body = format!("gravity: [0, 0, 0], contact: {{}}, cloths: [{}, {}]", flat(1.0, 20, [0.0; 3]), flat(1.0, 24, [0.013, 0.021, 0.0]));
-    for depth in [0.05, 0.2] {
-        let at = move |p: World3| { let r = p.x.hypot(p.y); World3::new(p.x, p.y, 0.1 - (0.1 + depth) * (-(r / 0.2).powi(2)).exp()) };
+    for depth in [0.02, 0.06] {
+        let at = move |p: World3| World3::new(p.x, p.y, 0.04 - (0.04 + depth) * (-(p.x.hypot(p.y) / 0.35).powi(2)).exp());
         all.push((format!("bump {depth}"), bent2(&body, 21 * 21, at)));
     }
-    // Waves through a sheet: several contours at once.
-    let at = |p: World3| World3::new(p.x, p.y, 0.013 + 0.06 * (9.0 * p.x).sin());
-    all.push(("waves".into(), bent2(&body, 21 * 21, at)));
-    let at = |p: World3| World3::new(p.x, p.y, 0.05 * ((9.0 * p.x).sin() * (8.0 * p.y).cos() + 0.3));
-    all.push(("bumps".into(), bent2(&body, 21 * 21, at)));
+    // Waves through a sheet, bent but not strained: several contours at once.
+    for (angle, k) in [(0.6, 12.0), (0.9, 9.0)] {
+        let at = move |p: World3| {
+            let n = 400;
+            let s = p.x / n as f64;
+            let angle = |i: usize| angle * f64::cos(k * s * (i as f64 + 0.5));
+            let x: f64 = (0..n).map(|i| angle(i).cos() * s).sum();
+            let z: f64 = (0..n).map(|i| angle(i).sin() * s).sum();
+            World3::new(x, p.y, 0.013 + z)
+        };
+        all.push((format!("waves {angle}"), bent2(&body, 21 * 21, at)));
+    }
     // A sheet folded over so that one end goes through the other, by an angle.
-    for (over, turn) in [(0.25, 0.3), (0.4, 0.7)] {
+    for turn in [0.3, 0.7] {
         let body = format!("gravity: [0, 0, 0], contact: {{}}, cloths: [{}]", sheet([0.5, 1.2], [12, 28], [0.0, 0.6, 0.0], x, 0.0));
         let at = move |p: World3| {
             // A loop of radius 0.1 that comes back through its start.
@@ -114,18 +126,17 @@ fn tangles() -> Vec<(String, World)> {
                 let left = s - start - a * r;
                 (r * a.sin() + left * a.cos(), r * (1.0 - a.cos()) + left * a.sin())
             };
-            let _ = over;
             World3::new(p.x, y, z)
         };
-        all.push((format!("fold {over}"), bent(world(&body), at)));
+        all.push((format!("fold {turn}"), bent(world(&body), at)));
     }
     // Obstacles.
     let sphere = "obstacles: [{ name: 'o', mesh: { sphere: { radius_m: 0.15 } } }]";
     let cuboid = "obstacles: [{ name: 'o', mesh: { box: { size_m: [0.3, 0.25, 0.2] } } }]";
     for (name, obstacle) in [("sphere", sphere), ("box", cuboid)] {
-        for (z, degrees) in [(0.01, 0.0), (0.06, 20.0), (-0.04, 75.0)] {
-            let body = format!("gravity: [0, 0, -9.81], contact: {{}}, {obstacle}, cloths: [{}]", sheet([0.8, 0.8], [20, 20], [0.013, 0.021, z], x, degrees));
-            all.push((format!("{name} {z} {degrees}"), world(&body)));
+        for (z, degrees, g) in [(0.01, 0.0, 0.0), (0.01, 0.0, -9.81), (0.06, 20.0, -9.81), (-0.04, 75.0, -9.81)] {
+            let body = format!("gravity: [0, 0, {g}], contact: {{}}, {obstacle}, cloths: [{}]", sheet([0.8, 0.8], [20, 20], [0.013, 0.021, z], x, degrees));
+            all.push((format!("{name} {z} {degrees} {g}"), world(&body)));
         }
     }
     all
@@ -181,4 +192,77 @@ fn cloth_without_room_between_obstacles_is_let_through_and_led_back() {
     }
     assert!(yielded > 0);
     assert!(world.crossings(40).is_none());
+}
+
+/// Two sheets, one through the other at an angle.
+fn crossed() -> World {
+    let [a, b] = [
+        sheet([0.5, 0.5], [5, 5], [0.0; 3], [1.0, 0.0, 0.0], 0.0),
+        sheet([0.3, 0.4], [4, 5], [0.02, 0.01, 0.1], [1.0, 0.2, 0.0], 70.0),
+    ];
+    world(&format!("gravity: [0, 0, 0], contact: {{}}, cloths: [{a}, {b}]"))
+}
+
+#[test]
+fn forces_and_stiffness_are_those_of_finite_differences() {
+    let world = crossed();
+    let cloth = &world.cloth;
+    let settings = world.contact.unwrap();
+    let mut contact = SurfaceContact::new(cloth, None, settings).unwrap().tangled(&[]);
+    let h = 0.01;
+    let stage = Stage { x_t0: &cloth.x, base: &cloth.x, h };
+    contact.begin(stage, [0.0, h], &cloth.m, &cloth.x);
+    let mut pattern = PatternBuilder::new(cloth.x.len());
+    pattern.add(&contact.couples()).unwrap();
+    let mut matrix = BlockMatrix::new(Arc::new(pattern.build().unwrap()));
+    let wave = |i: usize, k: f64| World3::new((k * i as f64).sin(), (1.7 * k * i as f64).cos(), (2.3 * k * i as f64).sin());
+    let x: Vec<World3> = cloth.x.iter().enumerate().map(|(i, x)| x + wave(i, 1.0) * 1e-3).collect();
+    let mut gradient = vec![World3::zeros(); x.len()];
+    contact.add_system(&x, &mut gradient, &mut matrix);
+    let size: f64 = gradient.iter().map(|g| g.norm()).sum();
+    assert!(size > 0.0 && contact.energy(&x) > 0.0);
+    for k in 2..8 {
+        let way: Vec<World3> = (0..x.len()).map(|i| wave(i, 0.3 * f64::from(k))).collect();
+        let at = |s: f64| -> Vec<World3> { x.iter().zip(&way).map(|(x, d)| x + d * s).collect() };
+        let e = 1e-6;
+        let slope = (contact.energy(&at(e)) - contact.energy(&at(-e))) / (2.0 * e);
+        let exact: f64 = gradient.iter().zip(&way).map(|(g, d)| g.dot(d)).sum();
+        assert!((slope - exact).abs() < 1e-6 * size, "{slope} {exact}");
+        let force = |s: f64| {
+            let (mut gradient, mut unused) = (vec![World3::zeros(); x.len()], matrix.clone());
+            contact.add_system(&at(s), &mut gradient, &mut unused);
+            gradient
+        };
+        let mut product = vec![World3::zeros(); x.len()];
+        matrix.multiply(&way, &mut product);
+        let largest = product.iter().map(|p| p.norm()).fold(0.0, f64::max);
+        for ((a, b), p) in force(e).iter().zip(&force(-e)).zip(&product) {
+            assert!(((a - b) / (2.0 * e) - p).norm() < 1e-5 * largest);
+        }
+    }
+}
+
+/// The state is the positions alone.
+#[test]
+fn a_resumed_run_has_the_same_bits_at_any_number_of_threads() {
+    let run = |resumed: bool, threads: usize| {
+        let straight = || {
+            let mut world = crossed();
+            world.advance().unwrap();
+            let saved = checkpoint::save(&mut world);
+            if resumed {
+                world = crossed();
+                checkpoint::restore(&mut world, &saved).unwrap();
+            }
+            assert!(world.crossings(1).is_some());
+            (0..6).for_each(|_| drop(world.advance().unwrap()));
+            assert!(world.crossings(7).is_none());
+            world.cloth
+        };
+        par::with_threads(threads, straight).unwrap()
+    };
+    let straight = run(false, 1);
+    for (resumed, threads) in [(true, 1), (false, 2), (true, 2)] {
+        assert_eq!(straight, run(resumed, threads), "{resumed} {threads}");
+    }
 }

@@ -87,12 +87,9 @@ impl Exit {
                 let wall = sorted(wall.collect());
                 let mean_normal: World3 =
                     traces.triangles[1 - side].iter().map(|&t| normal(surface, x, t)).sum();
-                let Some((distance, direction)) =
-                    shortest(surface, x, plug, &triangles, size, mean_normal)
-                else {
-                    continue;
-                };
-                if distance < best {
+                let found =
+                    shortest(surface, x, plug, &triangles, [size, best], mean_normal);
+                if let Some((distance, direction)) = found {
                     best = distance;
                     let sign = if side == 0 { 1.0 } else { -1.0 };
                     exit.direction = Some(direction * sign);
@@ -100,6 +97,7 @@ impl Exit {
                 }
             }
         }
+        exit.distance = best.min(way);
         exit
     }
 }
@@ -152,13 +150,13 @@ fn around(
 }
 
 /// The direction in which all points of a plug are soonest through some triangles, and how far that
-/// is (m). Points that never are count as twice the size of the plug.
+/// is (m); `None` if it is no less than `limit`. Points that never are count as twice the size of the plug.
 fn shortest(
     surface: &Surface,
     x: &[World3],
     plug: &[u32],
     triangles: &[u32],
-    size: f64,
+    [size, limit]: [f64; 2],
     mean_normal: World3,
 ) -> Option<(f64, World3)> {
     let stride = plug.len().div_ceil(MAX_SAMPLES);
@@ -172,10 +170,13 @@ fn shortest(
         }
     }
     directions.extend([mean_normal, -mean_normal]);
-    let mut best: Option<(f64, World3)> = None;
+    let mut best = (limit, None);
     for direction in directions {
         let Some(direction) = direction.try_normalize(0.0) else { continue };
         let (mut longest, mut missed) = (0.0f64, 0);
+        let cost = |longest: f64, missed: usize| {
+            longest + 2.0 * size * missed as f64 / samples.len() as f64
+        };
         for from in &samples {
             let hits = triangles.iter().filter_map(|&t| {
                 hit(from, &direction, &surface.corners(x, t))
@@ -186,16 +187,15 @@ fn shortest(
             } else {
                 missed += 1;
             }
+            if cost(longest, missed) >= best.0 {
+                break;
+            }
         }
-        if 2 * missed > samples.len() {
-            continue;
-        }
-        let cost = longest + 2.0 * size * missed as f64 / samples.len() as f64;
-        if best.is_none_or(|(least, _)| cost < least) {
-            best = Some((cost, direction));
+        if 2 * missed <= samples.len() && cost(longest, missed) < best.0 {
+            best = (cost(longest, missed), Some(direction));
         }
     }
-    best
+    best.1.map(|direction| (best.0, direction))
 }
 
 /// How far a point is from a triangle along a direction (m).
