@@ -10,6 +10,7 @@ use nalgebra::Matrix3;
 /// Stiffness in units of the mass of what moves over h².
 const STIFFNESS: f64 = 20.0;
 /// The same across the way: things that cross do not slide about freely.
+fn together() -> f64 { std::env::var("TOG").map_or(20.0, |g| g.parse().unwrap()) }
 fn grip() -> f64 { std::env::var("GRIP").map_or(1.0, |g| g.parse().unwrap()) }
 
 /// One crossing on its way.
@@ -48,6 +49,19 @@ impl Drive {
         let along = direction * direction.transpose();
         let stiffness = along * STIFFNESS + (Matrix3::identity() - along) * grip();
         (mobility > 0.0).then(|| Drive { parts, offset, want, stiffness: stiffness / mobility })
+    }
+
+    /// What keeps two vertices of a plug together: it follows its crossings without being left behind
+    /// or thrown about.
+    pub(super) fn together(edge: [u32; 2], start: &Start<'_>) -> Drive {
+        let [i, j] = edge.map(|v| v as usize);
+        let mobility = 1.0 / start.inertia[i] + 1.0 / start.inertia[j];
+        Drive {
+            parts: vec![(edge[0], 1.0), (edge[1], -1.0)],
+            offset: start.x[j] - start.x[i],
+            want: World3::zeros(),
+            stiffness: Matrix3::identity() * (together() / mobility),
+        }
     }
 
     /// How far the crossing is off its way (m).

@@ -22,16 +22,13 @@ pub(super) struct Exit {
     /// Where the first side of the contour goes against the second; `None` where each crossing is on its
     /// own.
     pub(super) direction: Option<World3>,
-    /// How far (m).
-    pub(super) distance: f64,
     /// Vertices that may go through `wall`.
     pub(super) plug: Vec<u32>,
     pub(super) wall: Vec<u32>,
 }
 
 impl Exit {
-    /// Of a contour of some length (m) that has not gone further than `way` at the end of the stage
-    /// (m).
+    /// Of a contour of some length (m), on which things go no further than `way` in the stage (m).
     pub(super) fn find(
         surface: &Surface,
         x: &[World3],
@@ -51,7 +48,6 @@ impl Exit {
         };
         let mut exit = Exit {
             direction: None,
-            distance: way,
             plug: sides[0].clone(),
             wall: around(surface, x, &traces.triangles[1], &near(&sides[0], 2.0 * way), &sides[0]).1,
         };
@@ -97,7 +93,6 @@ impl Exit {
                 }
             }
         }
-        exit.distance = best.min(way);
         exit
     }
 }

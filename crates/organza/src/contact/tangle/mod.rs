@@ -153,10 +153,16 @@ impl Tangle {
             for (push, sign) in own {
                 is_driven[push.crossing as usize] = true;
                 let want = match exit.direction {
-                    Some(direction) => direction * (sign * exit.distance.min(way)),
+                    Some(direction) => direction * (sign * way),
                     None => push.displacement(way, 1.0),
                 };
                 self.drives.extend(Drive::new(push, want, start, self.joined.n_cloth));
+            }
+        }
+        for &[i, j] in surface.edges() {
+            let is_plug = self.plugs[i as usize] & self.plugs[j as usize] != 0;
+            if is_plug && (j as usize) < self.joined.n_cloth {
+                self.drives.push(Drive::together([i, j], start));
             }
         }
         // What only touches makes no contour, and may go on as well.
