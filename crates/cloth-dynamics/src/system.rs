@@ -117,7 +117,7 @@ impl System {
         })
     }
 
-    /// Gives the cloth contact. Steps then start where nothing touches and keep it so.
+    /// Gives the cloth contact. Steps then keep apart what is apart.
     pub fn set_contact(&mut self, contact: Box<dyn Contact>) {
         self.contact = Some(contact);
     }

@@ -63,7 +63,7 @@ impl Spread {
 type Figure = (&'static str, fn(&FrameReport) -> f64);
 
 /// The figures of [`Info::totals`], in the order shown.
-const FIGURES: [Figure; 23] = [
+const FIGURES: [Figure; 24] = [
     ("vertices", |r| r.vertices as f64),
     ("faces", |r| r.faces as f64),
     ("substeps", |r| f64::from(r.substeps)),
@@ -75,6 +75,7 @@ const FIGURES: [Figure; 23] = [
     ("contacts", |r| r.contacts as f64),
     ("shortened_ways", |r| r.shortened_ways as f64),
     ("crossings", |r| r.crossings.unwrap_or(0) as f64),
+    ("yielded", |r| r.yielded as f64),
     ("splits", |r| r.remesh.map_or(0.0, |m| m.splits as f64)),
     ("flips", |r| r.remesh.map_or(0.0, |m| m.flips as f64)),
     ("collapses", |r| r.remesh.map_or(0.0, |m| m.collapses as f64)),

@@ -254,7 +254,8 @@ impl World {
                 // Where flips and collapses took cloth through something, only splits are made next
                 // time; in the end, everywhere.
                 let tangled = self.tangled.matters();
-                let length = |world: &World| if tangled { world.contour_length(frame) } else { 0.0 };
+                let length =
+                    |world: &World| if tangled { world.contour_length(frame) } else { 0.0 };
                 let (edited, mut hold) = (std::mem::replace(&mut self.cloth, saved), Vec::new());
                 let before = length(self);
                 let saved = std::mem::replace(&mut self.cloth, edited);

@@ -4,168 +4,213 @@ use cloth_dynamics::Stage;
 use cloth_dynamics::contact::Contact;
 use cloth_dynamics::solver::{BlockMatrix, PatternBuilder};
 use mesh_core::{World3, par};
+use nalgebra::{Rotation3, Unit};
 use organza::checkpoint;
 use organza::contact::SurfaceContact;
 use organza::scene::{LoadOptions, from_sources, parse};
 use organza::world::World;
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// The most frames that a tangle may take.
 const FRAMES: usize = 50;
-/// By how much a contour may grow from one frame to the next, in shares of its first length.
-const TOLERANCE: f64 = 0.02;
+/// By how much the contours may grow from one frame to the next, in shares of their first length:
+/// where they do not change, as those of a strip in a slit, they follow how the cloth moves.
+const TOLERANCE: f64 = 5e-3;
 
 fn world(body: &str) -> World {
-    let text = format!("{{ frames: 60, frames_per_second: 25, substeps: 2, {body} }}");
+    let text =
+        format!("{{ frames: 60, frames_per_second: 25, substeps: 2, contact: {{}}, {body} }}");
     World::new(&parse(text, "s", &LoadOptions::default(), &from_sources(&[])).unwrap()).unwrap()
 }
 
-/// A sheet with its middle at `at` (m), turned by some degrees about an axis.
-fn sheet(size: [f64; 2], cells: [usize; 2], at: [f64; 3], axis: [f64; 3], degrees: f64) -> String {
-    let turn = nalgebra::Rotation3::from_axis_angle(
-        &nalgebra::Unit::new_normalize(World3::from(axis)),
-        degrees.to_radians(),
-    );
+/// The weightless world of some sheets.
+fn weightless(sheets: &[String]) -> World {
+    world(&format!("gravity: [0, 0, 0], cloths: [{}]", sheets.join(", ")))
+}
+
+/// A sheet with its middle at `at` (m), turned by some degrees about an axis, in squares of about 5 cm.
+fn sheet(size: [f64; 2], at: [f64; 3], axis: [f64; 3], degrees: f64) -> String {
+    let turn =
+        Rotation3::from_axis_angle(&Unit::new_normalize(World3::from(axis)), degrees.to_radians());
     let corner = World3::from(at) - turn * World3::new(0.5 * size[0], 0.5 * size[1], 0.0);
+    let cells = size.map(|s| (s / 0.05).round() as usize);
+    let (x, y, z) = (corner.x, corner.y, corner.z);
     format!(
         "{{ fabric: 'woven-light', mesh: {{ grid: {{ size_m: {size:?}, cells: {cells:?} }} }},
-            transform: {{ translate: [{}, {}, {}], rotate: {{ axis: {axis:?}, degrees: {degrees} }} }} }}",
-        corner.x, corner.y, corner.z
+            transform: {{ translate: [{x}, {y}, {z}],
+                          rotate: {{ axis: {axis:?}, degrees: {degrees} }} }} }}"
     )
 }
 
-/// Where all vertices of a world go (m).
-fn bent(mut world: World, at: impl Fn(World3) -> World3) -> World {
-    world.cloth.x.iter_mut().for_each(|x| *x = at(*x));
+const X: [f64; 3] = [1.0, 0.0, 0.0];
+
+/// A square metre in the plane z = 0.
+fn lying() -> String {
+    sheet([1.0, 1.0], [0.0; 3], X, 0.0)
+}
+
+/// Puts the last vertices, or all, in other places at the start (m).
+fn bent(mut world: World, all: bool, at: impl Fn(World3) -> World3) -> World {
+    let first = if all { 0 } else { 21 * 21 };
+    world.cloth.x[first..].iter_mut().for_each(|x| *x = at(*x));
     let saved = checkpoint::save(&mut world);
     checkpoint::restore(&mut world, &saved).unwrap();
     world
 }
 
-/// Lengths of the contours before and after every frame until nothing crosses.
-fn untangle(name: &str, world: &mut World) -> Option<usize> {
+/// Runs a world until nothing crosses any more, and some frames on: the contours never grow.
+#[track_caller]
+fn comes_apart(name: &str, world: &mut World) {
     let first = world.contour_length(0);
-    let mut length = first;
-    let n = world.crossings(0).map_or(0, |c| c.n);
-    let mut line = format!("{name}: {n} crossings, {first:.4} m:");
-    let mut worst = 0.0f64;
-    let (mut retries, mut iterations) = (0, 0);
-    let start = std::time::Instant::now();
-    for frame in 1..=FRAMES {
-        let report = match world.advance() {
-            Ok(report) => report,
-            Err(error) => { println!("{line} {error}"); return None; }
-        };
+    assert!(first > 0.0, "{name}: not tangled");
+    let (mut lengths, mut worst) = (vec![first], 0.0f64);
+    let free = (1..=FRAMES).find(|_| {
+        let report = world.advance().unwrap();
         let now = world.contour_length(world.frame);
-        worst = worst.max((now - length) / first);
-        line += &format!(" {:.3}", now);
-        retries += report.retries;
-        iterations += report.newton_iterations;
-        length = now;
+        worst = worst.max((now - lengths[lengths.len() - 1]) / first);
+        lengths.push(now);
         assert!(report.kinetic_energy_j.is_finite());
-        if report.crossings == Some(0) {
-            println!("{line} | {frame} frames, worst {worst:.4}, {retries} retries, {iterations} it, {:.2} s", start.elapsed().as_secs_f64());
-            return Some(frame);
-        }
+        world.cloth.mesh.validate().unwrap();
+        report.crossings == Some(0)
+    });
+    let frames = free.unwrap_or_else(|| panic!("{name} does not: {lengths:?} m"));
+    println!("{name}: {first:.3} m gone in {frames} frames, grows by {worst:.5} at most");
+    assert!(worst < TOLERANCE, "{name}: grows by {worst}: {lengths:?} m");
+    for _ in 0..5 {
+        assert_eq!(world.advance().unwrap().crossings, Some(0), "{name}");
     }
-    println!("{line} | NOT, worst {worst:.4}, {retries} retries, {iterations} it, {:.2} s", start.elapsed().as_secs_f64());
-    None
 }
 
-fn tangles() -> Vec<(String, World)> {
-    let mut all = Vec::new();
-    let x = [1.0, 0.0, 0.0];
-    let flat = |size: f64, n: usize, at: [f64; 3]| sheet([size, size], [n, n], at, x, 0.0);
-    // Sheets through a lying one, by depth and angle.
-    for (depth, degrees) in [(0.05, 90.0), (0.2, 90.0), (0.5, 90.0), (0.3, 60.0), (0.5, 45.0), (0.1, 30.0)] {
-        let half = 0.5f64;
-        let (s, c) = f64::to_radians(degrees).sin_cos();
-        // Its lower edge is `depth` beyond the plane, along the sheet.
-        let along = half - depth;
-        let other = sheet([0.6, 1.0], [12, 20], [0.013, along * c + 0.007, along * s], x, degrees);
-        let body = format!("gravity: [0, 0, 0], contact: {{}}, cloths: [{}, {other}]", flat(1.0, 20, [0.0; 3]));
-        all.push((format!("{depth} m at {degrees}"), world(&body)));
-    }
-    // A corner poked through; a crossing at a boundary; slit into slit.
-    let corner = {
-        let turn = nalgebra::Rotation3::from_axis_angle(&World3::x_axis(), 1.5707963) * nalgebra::Rotation3::from_axis_angle(&World3::z_axis(), 0.7853981);
-        let body = format!("gravity: [0, 0, 0], contact: {{}}, cloths: [{}, {}]", flat(1.0, 20, [0.0; 3]), sheet([0.5, 0.5], [10, 10], [0.0; 3], x, 0.0));
-        bent2(&body, 21 * 21, move |p| turn * p + World3::new(0.01, 0.02, 0.25))
-    };
-    all.push(("corner".into(), corner));
-    let body = format!("gravity: [0, 0, 0], contact: {{}}, cloths: [{}, {}]", flat(1.0, 20, [0.0; 3]), sheet([0.6, 0.6], [12, 12], [0.61, 0.013, 0.003], x, 80.0));
-    all.push(("slits at a boundary".into(), world(&body)));
-    // A bump through a lying sheet: closed contours.
-    let body = format!("gravity: [0, 0, 0], contact: {{}}, cloths: [{}, {}]", flat(1.0, 20, [0.0; 3]), flat(1.0, 24, [0.013, 0.021, 0.0]));
-    for depth in [0.02, 0.06] {
-        let at = move |p: World3| World3::new(p.x, p.y, 0.04 - (0.04 + depth) * (-(p.x.hypot(p.y) / 0.35).powi(2)).exp());
-        all.push((format!("bump {depth}"), bent2(&body, 21 * 21, at)));
-    }
-    // Waves through a sheet, bent but not strained: several contours at once.
-    for (angle, k) in [(0.6, 12.0), (0.9, 9.0)] {
-        let at = move |p: World3| {
-            let n = 400;
-            let s = p.x / n as f64;
-            let angle = |i: usize| angle * f64::cos(k * s * (i as f64 + 0.5));
-            let x: f64 = (0..n).map(|i| angle(i).cos() * s).sum();
-            let z: f64 = (0..n).map(|i| angle(i).sin() * s).sum();
-            World3::new(x, p.y, 0.013 + z)
-        };
-        all.push((format!("waves {angle}"), bent2(&body, 21 * 21, at)));
-    }
-    // A sheet folded over so that one end goes through the other, by an angle.
-    for turn in [0.3, 0.7] {
-        let body = format!("gravity: [0, 0, 0], contact: {{}}, cloths: [{}]", sheet([0.5, 1.2], [12, 28], [0.0, 0.6, 0.0], x, 0.0));
-        let at = move |p: World3| {
-            // A loop of radius 0.1 that comes back through its start.
-            let (r, s) = (0.12, p.y);
-            let bend = std::f64::consts::PI + turn + 0.6;
-            let start = 0.6 - 0.5 * bend * r;
-            let (y, z) = if s < start { (s - start, 0.0) } else {
-                let a = ((s - start) / r).min(bend);
-                let left = s - start - a * r;
-                (r * a.sin() + left * a.cos(), r * (1.0 - a.cos()) + left * a.sin())
-            };
-            World3::new(p.x, y, z)
-        };
-        all.push((format!("fold {turn}"), bent(world(&body), at)));
-    }
-    // Obstacles.
-    let sphere = "obstacles: [{ name: 'o', mesh: { sphere: { radius_m: 0.15 } } }]";
-    let cuboid = "obstacles: [{ name: 'o', mesh: { box: { size_m: [0.3, 0.25, 0.2] } } }]";
-    for (name, obstacle) in [("sphere", sphere), ("box", cuboid)] {
-        for (z, degrees, g) in [(0.01, 0.0, 0.0), (0.01, 0.0, -9.81), (0.06, 20.0, -9.81), (-0.04, 75.0, -9.81)] {
-            let body = format!("gravity: [0, 0, {g}], contact: {{}}, {obstacle}, cloths: [{}]", sheet([0.8, 0.8], [20, 20], [0.013, 0.021, z], x, degrees));
-            all.push((format!("{name} {z} {degrees} {g}"), world(&body)));
-        }
-    }
-    all
-}
-
-/// The same for vertices from `first` on.
-fn bent2(body: &str, first: usize, at: impl Fn(World3) -> World3) -> World {
-    let mut world = world(body);
-    world.cloth.x[first..].iter_mut().for_each(|x| *x = at(*x));
-    bent(world, |x| x)
-}
-
+/// Six tangles.
 #[test]
-fn all() {
-    let only: Option<usize> = std::env::var("ONLY").ok().map(|s| s.parse().unwrap());
-    let mut n = 0;
-    let mut of = 0;
-    for (k, (name, mut world)) in tangles().into_iter().enumerate() {
-        if only.is_some_and(|o| o != k) { continue; }
-        of += 1;
-        n += usize::from(untangle(&name, &mut world).is_some());
+fn sheets_pushed_through_a_sheet_come_apart() {
+    // By how much (m), along the sheet, and at which angle to the plane.
+    let ways = [(0.05, 90.0), (0.2, 90.0), (0.5, 90.0), (0.3, 60.0), (0.5, 45.0), (0.1, 30.0)];
+    for (depth, degrees) in ways {
+        let (s, c) = f64::to_radians(degrees).sin_cos();
+        let at = [0.013, (0.5 - depth) * c + 0.007, (0.5 - depth) * s];
+        let other = sheet([0.6, 1.0], at, X, degrees);
+        comes_apart(&format!("{depth} m at {degrees}°"), &mut weightless(&[lying(), other]));
     }
-    println!("{n} of {of}");
+}
+
+/// Two tangles.
+#[test]
+fn a_corner_and_two_sheets_in_slits_come_apart() {
+    let turn = Rotation3::from_axis_angle(&World3::x_axis(), 0.5 * PI)
+        * Rotation3::from_axis_angle(&World3::z_axis(), 0.25 * PI);
+    let flat = weightless(&[lying(), sheet([0.5, 0.5], [0.0; 3], X, 0.0)]);
+    let corner = bent(flat, false, |x| turn * x + World3::new(0.01, 0.02, 0.25));
+    comes_apart("corner", &mut { corner });
+    // Each comes in over the other's side, so that nothing is cut off.
+    let other = sheet([0.6, 0.6], [0.61, 0.013, 0.003], X, 80.0);
+    comes_apart("slits", &mut weightless(&[lying(), other]));
+}
+
+/// Four tangles, of closed contours and of several.
+#[test]
+fn bumps_and_waves_come_apart() {
+    let flat = || weightless(&[lying(), sheet([1.2, 1.2], [0.013, 0.021, 0.0], X, 0.0)]);
+    for depth in [0.02, 0.06] {
+        let mut bump = bent(flat(), false, |x| {
+            let hill = (-(x.x.hypot(x.y) / 0.35).powi(2)).exp();
+            World3::new(x.x, x.y, 0.04 - (0.04 + depth) * hill)
+        });
+        comes_apart(&format!("bump by {depth} m"), &mut bump);
+    }
+    // Bent and not strained: the slope is a function of the length along the sheet.
+    for (slope, k) in [(0.6, 12.0), (0.9, 9.0)] {
+        let mut waves = bent(flat(), false, |at| {
+            let (n, mut x) = (400, World3::new(0.0, at.y, 0.013));
+            for i in 0..n {
+                let s = at.x / f64::from(n);
+                let angle = slope * f64::cos(k * s * (f64::from(i) + 0.5));
+                x += World3::new(angle.cos(), 0.0, angle.sin()) * s;
+            }
+            x
+        });
+        comes_apart(&format!("waves of slope {slope}"), &mut waves);
+    }
+}
+
+/// Two tangles of a sheet with itself.
+#[test]
+fn a_sheet_in_a_loop_through_itself_comes_apart() {
+    for turn in [0.3, 0.7] {
+        let strip = weightless(&[sheet([0.5, 1.2], [0.0, 0.6, 0.0], X, 0.0)]);
+        let mut loop_ = bent(strip, true, |x| {
+            // Round a cylinder and straight on, through where it came from.
+            let (r, bend) = (0.12, PI + turn + 0.6);
+            let s = x.y - (0.6 - 0.5 * bend * r);
+            let a = (s / r).clamp(0.0, bend);
+            let left = s - a * r;
+            let (sin, cos) = a.sin_cos();
+            World3::new(x.x, r * sin + left * cos, r * (1.0 - cos) + left * sin)
+        });
+        comes_apart(&format!("loop by {turn}"), &mut loop_);
+    }
+}
+
+/// Eight tangles.
+#[test]
+fn sheets_come_out_of_obstacles() {
+    let shapes = ["sphere: { radius_m: 0.15 }", "box: { size_m: [0.3, 0.25, 0.2] }"];
+    let ways = [(0.01, 0.0, 0.0), (0.01, 0.0, -9.81), (0.06, 20.0, -9.81), (-0.04, 75.0, -9.81)];
+    for shape in shapes {
+        for (z, degrees, gravity) in ways {
+            let cloth = sheet([0.8, 0.8], [0.013, 0.021, z], X, degrees);
+            let mut world = world(&format!(
+                "gravity: [0, 0, {gravity}], obstacles: [{{ mesh: {{ {shape} }} }}], cloths: [{cloth}]"
+            ));
+            comes_apart(&format!("{shape} at {z} m, {degrees}°, {gravity} m/s²"), &mut world);
+        }
+    }
+}
+
+/// Remeshing goes on meanwhile.
+#[test]
+fn a_sheet_that_adapts_comes_apart() {
+    let other = sheet([0.6, 1.0], [0.013, 0.007, 0.3], X, 90.0);
+    let adapts = ", remeshing: { size_m: { min: 0.02, max: 0.2 }, refine_angle: 0.3 } }";
+    let sheets = [lying(), other].map(|s| format!("{}{adapts}", s.strip_suffix('}').unwrap()));
+    let mut world = weightless(&sheets);
+    let edits = (0..FRAMES).scan(true, |tangled, _| {
+        let report = world.advance().unwrap();
+        let is_on = std::mem::replace(tangled, report.crossings != Some(0));
+        let remesh = report.remesh.unwrap();
+        is_on.then_some(remesh.splits + remesh.flips + remesh.collapses)
+    });
+    assert!(edits.sum::<usize>() > 0);
+    assert!(world.crossings(world.frame).is_none());
+    world.cloth.mesh.validate().unwrap();
+}
+
+/// What is not tangled builds nothing of this.
+#[test]
+fn untangling_is_absent_where_nothing_is_tangled() {
+    let is_absent = |world: &mut World| {
+        let skipped = world.advance().unwrap().skipped;
+        skipped.iter().any(|stage| stage == "untangling: nothing passes through anything")
+    };
+    let mut apart = weightless(&[lying(), sheet([0.6, 1.0], [0.0, 0.0, 0.6], X, 90.0)]);
+    assert!(is_absent(&mut apart) && apart.warnings.is_empty());
+    let mut tangled = weightless(&[lying(), sheet([0.6, 1.0], [0.0, 0.0, 0.4], X, 90.0)]);
+    let [warning] = &tangled.warnings[..] else { panic!("{:?}", tangled.warnings) };
+    assert!(
+        warning.starts_with("in the initial state: 34 edges pass through triangles"),
+        "{warning}"
+    );
+    assert!(!is_absent(&mut tangled));
+    assert!((0..FRAMES).any(|_| is_absent(&mut tangled)));
 }
 
 /// A sheet between two balls that leave it no room for a while.
 fn pinch() -> World {
     let ball = |name: &str, side: f64| {
-        let key = |t: f64, z: f64| format!("{{ time_s: {t}, transform: {{ translate: [0.003, 0.002, {}] }} }}", side * z);
+        let key = |t: f64, z: f64| {
+            format!("{{ time_s: {t}, transform: {{ translate: [0.003, 0.002, {}] }} }}", side * z)
+        };
         format!(
             "{{ name: '{name}', mesh: {{ sphere: {{ radius_m: 0.1 }} }}, motion: {{ interpolation: 'linear',
                keyframes: [{}, {}, {}, {}] }} }}",
@@ -173,9 +218,10 @@ fn pinch() -> World {
         )
     };
     world(&format!(
-        "contact: {{}}, gravity: [0, 0, -1], cloths: [{}], obstacles: [{}, {}]",
-        sheet([0.4, 0.4], [16, 16], [0.0, 0.0, 0.001], [1.0, 0.0, 0.0], 0.0),
-        ball("above", 1.0), ball("below", -1.0)
+        "gravity: [0, 0, -1], cloths: [{}], obstacles: [{}, {}]",
+        sheet([0.8, 0.8], [0.0, 0.0, 0.001], X, 0.0),
+        ball("above", 1.0),
+        ball("below", -1.0)
     ))
 }
 
@@ -186,7 +232,6 @@ fn cloth_without_room_between_obstacles_is_let_through_and_led_back() {
     for _ in 0..40 {
         let report = world.advance().unwrap();
         yielded += report.yielded;
-        println!("{} {:?} {} {} {:?}", report.frame, report.crossings, report.retries, report.yielded, report.warnings.first());
         assert_eq!(report.warnings.len(), report.yielded);
         assert!(report.kinetic_energy_j.is_finite());
     }
@@ -197,10 +242,10 @@ fn cloth_without_room_between_obstacles_is_let_through_and_led_back() {
 /// Two sheets, one through the other at an angle.
 fn crossed() -> World {
     let [a, b] = [
-        sheet([0.5, 0.5], [5, 5], [0.0; 3], [1.0, 0.0, 0.0], 0.0),
-        sheet([0.3, 0.4], [4, 5], [0.02, 0.01, 0.1], [1.0, 0.2, 0.0], 70.0),
+        sheet([0.5, 0.5], [0.0; 3], X, 0.0),
+        sheet([0.3, 0.4], [0.02, 0.01, 0.1], [1.0, 0.2, 0.0], 70.0),
     ];
-    world(&format!("gravity: [0, 0, 0], contact: {{}}, cloths: [{a}, {b}]"))
+    weightless(&[a, b])
 }
 
 #[test]
@@ -215,7 +260,9 @@ fn forces_and_stiffness_are_those_of_finite_differences() {
     let mut pattern = PatternBuilder::new(cloth.x.len());
     pattern.add(&contact.couples()).unwrap();
     let mut matrix = BlockMatrix::new(Arc::new(pattern.build().unwrap()));
-    let wave = |i: usize, k: f64| World3::new((k * i as f64).sin(), (1.7 * k * i as f64).cos(), (2.3 * k * i as f64).sin());
+    let wave = |i: usize, k: f64| {
+        World3::new((k * i as f64).sin(), (1.7 * k * i as f64).cos(), (2.3 * k * i as f64).sin())
+    };
     let x: Vec<World3> = cloth.x.iter().enumerate().map(|(i, x)| x + wave(i, 1.0) * 1e-3).collect();
     let mut gradient = vec![World3::zeros(); x.len()];
     contact.add_system(&x, &mut gradient, &mut matrix);

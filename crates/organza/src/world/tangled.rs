@@ -88,8 +88,7 @@ impl World {
             let corners = t.iter().map(|&v| (x[v as usize] - place).norm());
             corners.fold(f64::INFINITY, f64::min)
         };
-        let nearest =
-            mesh.triangles().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let nearest = mesh.triangles().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let Some(&[a, b, c]) = nearest else { return false };
         let length = |i: u32, j: u32| (x[i as usize] - x[j as usize]).norm();
         let longest = length(a, b).max(length(b, c)).max(length(c, a));

@@ -1,5 +1,6 @@
-//! What leads a crossing out: a spring that has its length at the end of the stage if the edge goes
-//! the wanted way against the triangle.
+//! What leads a crossing out: a spring that is at rest at the end of the stage if the edge has gone the
+//! wanted way against the triangle, and what lets a plug follow. Both work between things, so that they
+//! conserve the momentum of cloth; both are quadratic and bounded, so that a stage stays convex.
 
 use super::Start;
 use cloth_dynamics::solver::BlockMatrix;
@@ -10,8 +11,9 @@ use nalgebra::Matrix3;
 /// Stiffness in units of the mass of what moves over h².
 const STIFFNESS: f64 = 20.0;
 /// The same across the way: things that cross do not slide about freely.
-fn together() -> f64 { std::env::var("TOG").map_or(20.0, |g| g.parse().unwrap()) }
-fn grip() -> f64 { std::env::var("GRIP").map_or(1.0, |g| g.parse().unwrap()) }
+const GRIP: f64 = 1.0;
+/// The same between neighbours in a plug.
+const TOGETHER: f64 = 20.0;
 
 /// One crossing on its way.
 pub(in crate::contact) struct Drive {
@@ -47,7 +49,7 @@ impl Drive {
         }
         let direction = want.try_normalize(0.0)?;
         let along = direction * direction.transpose();
-        let stiffness = along * STIFFNESS + (Matrix3::identity() - along) * grip();
+        let stiffness = along * STIFFNESS + (Matrix3::identity() - along) * GRIP;
         (mobility > 0.0).then(|| Drive { parts, offset, want, stiffness: stiffness / mobility })
     }
 
@@ -60,7 +62,7 @@ impl Drive {
             parts: vec![(edge[0], 1.0), (edge[1], -1.0)],
             offset: start.x[j] - start.x[i],
             want: World3::zeros(),
-            stiffness: Matrix3::identity() * (together() / mobility),
+            stiffness: Matrix3::identity() * (TOGETHER / mobility),
         }
     }
 

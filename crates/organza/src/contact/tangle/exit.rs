@@ -11,6 +11,7 @@ use super::region::{Regions, Traces};
 use collision::contour::Push;
 use collision::{Aabb, Surface};
 use mesh_core::World3;
+use std::collections::HashSet;
 
 /// Points of a plug that are looked at.
 const MAX_SAMPLES: usize = 24;
@@ -49,7 +50,8 @@ impl Exit {
         let mut exit = Exit {
             direction: None,
             plug: sides[0].clone(),
-            wall: around(surface, x, &traces.triangles[1], &near(&sides[0], 2.0 * way), &sides[0]).1,
+            wall: around(surface, x, &traces.triangles[1], &near(&sides[0], 2.0 * way), &sides[0])
+                .1,
         };
         let slope: World3 = own.iter().map(|(push, sign)| push.gradient * *sign).sum();
         let mut best = f64::INFINITY;
@@ -83,8 +85,7 @@ impl Exit {
                 let wall = sorted(wall.collect());
                 let mean_normal: World3 =
                     traces.triangles[1 - side].iter().map(|&t| normal(surface, x, t)).sum();
-                let found =
-                    shortest(surface, x, plug, &triangles, [size, best], mean_normal);
+                let found = shortest(surface, x, plug, &triangles, [size, best], mean_normal);
                 if let Some((distance, direction)) = found {
                     best = distance;
                     let sign = if side == 0 { 1.0 } else { -1.0 };
@@ -117,10 +118,9 @@ fn around(
     room: &Aabb,
     others: &[u32],
 ) -> (Vec<u32>, Vec<u32>) {
-    let mut seen = vec![false; surface.n_triangles()];
-    let mut list = Vec::new();
+    let (mut seen, mut list) = (HashSet::new(), Vec::new());
     for &t in from {
-        if !std::mem::replace(&mut seen[t as usize], true) {
+        if seen.insert(t) {
             list.push(t);
         }
     }
@@ -129,11 +129,11 @@ fn around(
         for e in surface.edges_of(list[next]) {
             for &t in surface.triangles_at(e) {
                 let corners = surface.triangles()[t as usize];
-                if !seen[t as usize]
+                if !seen.contains(&t)
                     && surface.triangle_box(x, t).overlaps(room)
                     && corners.iter().all(|v| others.binary_search(v).is_err())
                 {
-                    seen[t as usize] = true;
+                    seen.insert(t);
                     list.push(t);
                 }
             }
@@ -165,6 +165,7 @@ fn shortest(
         }
     }
     directions.extend([mean_normal, -mean_normal]);
+    // The sheets of what is passed through say more about the way than any fixed directions do.
     let mut best = (limit, None);
     for direction in directions {
         let Some(direction) = direction.try_normalize(0.0) else { continue };
@@ -173,9 +174,8 @@ fn shortest(
             longest + 2.0 * size * missed as f64 / samples.len() as f64
         };
         for from in &samples {
-            let hits = triangles.iter().filter_map(|&t| {
-                hit(from, &direction, &surface.corners(x, t))
-            });
+            let hits =
+                triangles.iter().filter_map(|&t| hit(from, &direction, &surface.corners(x, t)));
             let nearest = hits.fold(f64::INFINITY, f64::min);
             if nearest.is_finite() {
                 longest = longest.max(nearest);

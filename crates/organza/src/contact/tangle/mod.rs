@@ -1,10 +1,11 @@
 //! Untangling: cloth that passes through something is led back, along the shortest way that there is.
 //!
-//! Each stage begins with the contours along which surfaces cross. What lies behind one, a plug, may
-//! go where it is (pairs of the two sides are [exempt](Tangle::is_exempt) from contact, which would lock
-//! them), and every crossing is [driven](drive) against what it crosses: along the [way](exit) on which
-//! the plug comes out, or on which the contour gets shorter (Volino2006). All of it follows from the
-//! positions at the start of the stage.
+//! Each stage begins with the contours along which surfaces cross. Contact would lock what lies behind
+//! one, a plug, so that pairs of the two sides are exempt from it there. Every crossing is driven
+//! against what it crosses, at a fixed speed: along the way on which the plug comes out, or on which the
+//! contour gets shorter (Volino2006), see [`Exit`]; the plug follows. All of this depends on the
+//! positions at the start of the stage alone, so that a run can go on from any of them. It is not there
+//! while nothing is tangled.
 
 mod drive;
 mod exit;
@@ -38,11 +39,7 @@ pub(super) struct Joined {
 impl Joined {
     pub(super) fn new(cloth: &Surface, obstacles: Option<&Surface>) -> Joined {
         let surface = obstacles.map_or_else(|| cloth.clone(), |o| cloth.joined(o));
-        Joined {
-            surface,
-            n_cloth: cloth.n_vertices(),
-            n_cloth_triangles: cloth.n_triangles(),
-        }
+        Joined { surface, n_cloth: cloth.n_vertices(), n_cloth_triangles: cloth.n_triangles() }
     }
 
     /// Contours of cloth with cloth, if it touches itself, and with obstacles; `x` are positions of
@@ -50,12 +47,11 @@ impl Joined {
     pub(super) fn contours(&self, x: &[World3], self_contact: bool) -> Contours {
         let x = &generic(x);
         let of_cloth = |edge: u32| (self.surface.edges()[edge as usize][0] as usize) < self.n_cloth;
-        let keep = |edge: u32, t: u32| {
-            match (of_cloth(edge), (t as usize) < self.n_cloth_triangles) {
-                (true, true) => self_contact,
-                (false, false) => false,
-                _ => true,
-            }
+        let keep = |edge: u32, t: u32| match (of_cloth(edge), (t as usize) < self.n_cloth_triangles)
+        {
+            (true, true) => self_contact,
+            (false, false) => false,
+            _ => true,
         };
         let tree: Bvh = self.surface.tree(x);
         Contours::find(&self.surface, x, &tree, keep)

@@ -67,12 +67,8 @@ impl Regions {
         }
         let mut whole = parent.clone();
         surface.edges().iter().for_each(|&[a, b]| unite(&mut whole, a, b));
-        let mut regions = Regions {
-            members: vec![Vec::new(); n],
-            sizes: vec![0; n],
-            parent,
-            whole,
-        };
+        let mut regions =
+            Regions { members: vec![Vec::new(); n], sizes: vec![0; n], parent, whole };
         for v in 0..n as u32 {
             let root = regions.of(v);
             regions.members[root as usize].push(v);
