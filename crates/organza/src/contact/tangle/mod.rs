@@ -156,8 +156,9 @@ impl Tangle {
             }
         }
         for &[i, j] in surface.edges() {
-            let is_plug = self.plugs[i as usize] & self.plugs[j as usize] != 0;
-            if is_plug && (j as usize) < self.joined.n_cloth {
+            let [a, b] = [i, j].map(|v| (self.plugs[v as usize], self.walls[v as usize]));
+            let is_near = a.0 & b.0 != 0 || a.1 & b.1 != 0;
+            if is_near && (j as usize) < self.joined.n_cloth {
                 self.drives.push(Drive::together([i, j], start));
             }
         }
