@@ -46,6 +46,23 @@ impl Pair {
         }
     }
 
+    /// The positions of its vertices, given those of the first body and of the second.
+    #[inline]
+    pub(crate) fn positions(
+        self,
+        vertices: [u32; 4],
+        front: &[World3],
+        rear: &[World3],
+    ) -> [World3; 4] {
+        let [i, j, k, l] = vertices.map(|v| v as usize);
+        // Without a choice for each vertex, which would cost more than most tests.
+        match self.kind {
+            PairKind::EdgeEdge => [front[i], front[j], rear[k], rear[l]],
+            PairKind::VertexTriangle => [front[i], rear[j], rear[k], rear[l]],
+            PairKind::TriangleVertex => [rear[i], front[j], front[k], front[l]],
+        }
+    }
+
     /// Which of the four vertices belong to the first body.
     #[inline]
     pub fn of_first(self) -> [bool; 4] {
@@ -161,13 +178,7 @@ impl Candidate {
     #[inline]
     pub(crate) fn of(pair: Pair, a: Body<'_>, b: Body<'_>) -> Candidate {
         let vertices = pair.vertices(a.surface, b.surface);
-        let [i, j, k, l] = vertices.map(|v| v as usize);
-        // Without a choice for each vertex, which would cost more than most tests.
-        let of = |front: &[World3], rear: &[World3]| match pair.kind {
-            PairKind::EdgeEdge => [front[i], front[j], rear[k], rear[l]],
-            PairKind::VertexTriangle => [front[i], rear[j], rear[k], rear[l]],
-            PairKind::TriangleVertex => [rear[i], front[j], front[k], front[l]],
-        };
+        let of = |front: &[World3], rear: &[World3]| pair.positions(vertices, front, rear);
         let thickness = match (pair.kind, &vertices) {
             (PairKind::EdgeEdge, [p, q, r, s]) => a.radius_of(&[*p, *q]) + b.radius_of(&[*r, *s]),
             (PairKind::VertexTriangle, [v, p, q, r]) => {

@@ -135,7 +135,7 @@ struct Shape {
     /// Powers of two of the size and of the distance from the origin.
     size: i32,
     far: i32,
-    /// Whether some triangles are turned round, left out, or given twice.
+    /// Whether some triangles are turned round, given twice, or without area.
     is_odd: bool,
 }
 
@@ -192,6 +192,21 @@ fn moving(shape: &Shape) -> Moving {
         let place = |x: World3| x * unit + World3::new(far, -far, far);
         x[0].push(place(start));
         x[1].push(place(end));
+    }
+    if shape.is_odd {
+        // Corners that are in the same place, or on a line with others but for almost nothing.
+        for v in n as usize + 2..n_vertices {
+            let (a, b) = (v - 1, v - n as usize - 2);
+            let (kind, off) = ((12.0 * random()) as i32, (30.0 * random() - 30.0).exp2());
+            for x in &mut x {
+                match kind {
+                    1..3 => x[v] = x[a],
+                    3..6 => x[v] = (x[a] + x[b]) * 0.5 + World3::new(off, -off, off) * unit,
+                    6..9 => x[v] = x[a] * 1.5 - x[b] * 0.5 + World3::new(-off, off, off) * unit,
+                    _ => {}
+                }
+            }
+        }
     }
     let radii =
         (0..n_vertices).map(|_| shape.radius * unit * (0.5 + 0.5 * random()).abs()).collect();

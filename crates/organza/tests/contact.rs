@@ -217,3 +217,70 @@ fn cloth_slips_on_an_incline_where_the_angle_of_friction_is_passed() {
         }
     }
 }
+
+/// A cylinder of radius `r` about the y axis, without its ends.
+fn cylinder(r: f64, friction: f64) -> Obstacles {
+    let n = 96u32;
+    let x: Vec<World3> = (0..n)
+        .flat_map(|i| {
+            let (s, c) = (std::f64::consts::TAU * f64::from(i) / f64::from(n)).sin_cos();
+            [-0.1, 0.1].map(|y| World3::new(r * c, y, r * s))
+        })
+        .collect();
+    let triangles: Vec<[u32; 3]> = (0..n)
+        .flat_map(|i| {
+            let [a, b] = [2 * i, 2 * ((i + 1) % n)];
+            [[a, b, a + 1], [b, b + 1, a + 1]]
+        })
+        .collect();
+    Obstacles {
+        surface: Surface::new(x.len(), &triangles).unwrap(),
+        friction: vec![friction; x.len()],
+        thickness: vec![None; x.len()],
+        motion: Arc::new(move |_| x.clone()),
+    }
+}
+
+/// A strip over a cylinder with weights at its ends: the heavier one goes down if it is more than
+/// e^(μπ) times the other (capstan.csv).
+#[test]
+fn weights_hold_each_other_over_a_cylinder_up_to_the_capstan_ratio() {
+    let (r, width, hanging) = (0.05, 0.02, 0.06);
+    let (half, out) = (std::f64::consts::FRAC_PI_2, r + 0.9 * THICKNESS);
+    for mu in [0.1, 0.3] {
+        for (share, slides) in [(0.95, false), (1.05, true)] {
+            let length = 2.0 * (half * out + hanging);
+            let cells = (length / 0.005).round() as usize;
+            let strip = generate::grid([length, width], [cells, 2], Diagonal::Alternating).unwrap();
+            let x: Vec<World3> = strip
+                .positions
+                .iter()
+                .map(|p| {
+                    let s = p.x - 0.5 * length;
+                    let angle = (s / out).clamp(-half, half);
+                    let down = (s.abs() - half * out).max(0.0);
+                    World3::new(out * angle.sin(), p.y - 0.5 * width, out * angle.cos() - down)
+                })
+                .collect();
+            let mut cloth = ClothState::at_rest(strip.mesh, x, vec![0.02]).unwrap();
+            let far = |x: &World3, sign: f64| sign * x.x > 0.0 && x.z < 1e-9 - hanging + 1e-6;
+            let ratio = share * (mu * std::f64::consts::PI).exp();
+            for (sign, weight) in [(-1.0, 0.004), (1.0, 0.004 * ratio)] {
+                let end: Vec<usize> =
+                    (0..cloth.x.len()).filter(|&i| far(&cloth.x[i], sign)).collect();
+                assert_eq!(end.len(), 3);
+                end.iter().for_each(|&i| cloth.m[i] += weight / 3.0);
+            }
+            let mut run = Run::new(cloth, Some(cylinder(r, mu)), 0.0);
+            run.tolerance = 1e-4;
+            run.steps(60, 0.005, &free);
+            let middle = |run: &Run| run.cloth.x.iter().map(|x| x.z * x.x.signum()).sum::<f64>();
+            let (start, n) = (middle(&run) / run.cloth.x.len() as f64, 20);
+            run.steps(n, 0.005, &free);
+            let way = (middle(&run) / run.cloth.x.len() as f64 - start).abs();
+            let speed = way / (n as f64 * 0.005);
+            println!("μ {mu}, {share} of the ratio: {speed} m/s");
+            assert_eq!(speed > 5e-3, slides, "μ {mu}, {share} of the ratio: {speed} m/s");
+        }
+    }
+}

@@ -1,4 +1,4 @@
-//! ARCSim's own flag at its own settings, where its files are at hand: beside what ARCSim takes.
+//! ARCSim's own scenes at its own settings, where its files are at hand: beside what ARCSim takes.
 
 use super::Context;
 use super::program::Simulation;
@@ -6,7 +6,7 @@ use super::report::{Figure, Report};
 use crate::command::{Failure, say};
 use std::path::{Path, PathBuf};
 
-/// Part of the flag that ARCSim 0.2.1 was timed on.
+/// Part of a scene that ARCSim 0.2.1 was timed on.
 struct Mark {
     frames: usize,
     /// CPU time of ARCSim on one free core (s).
@@ -15,32 +15,65 @@ struct Mark {
     arcsim_faces: [f64; 2],
 }
 
-/// Measured with ARCSim 0.2.1 on one thread of a quiet machine (AMD EPYC). Its flag touches itself;
-/// that costs it about a fifth of this time.
-const MARKS: [Mark; 2] = [
-    Mark { frames: 14, arcsim_cpu_s: 20.0, arcsim_faces: [3938.0, 11_376.0] },
-    Mark { frames: 35, arcsim_cpu_s: 257.0, arcsim_faces: [9741.0, 21_623.0] },
-];
+/// A scene of ARCSim. Measured with ARCSim 0.2.1 on one thread of a quiet machine (AMD EPYC).
+pub(super) struct Scene {
+    /// Name of its file, without ending.
+    name: &'static str,
+    /// What its figures begin with.
+    prefix: &'static str,
+    /// The shortest first; the others are left out of quick runs.
+    marks: &'static [Mark],
+    /// What else to know of ARCSim's times.
+    note: &'static str,
+}
 
-/// Runs the first frames of ARCSim's flag and adds figures `flag.arcsim_…`.
-pub(super) fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
+/// Its cloth touches itself, which costs it about a fifth of this time.
+pub(super) const FLAG: Scene = Scene {
+    name: "flag",
+    prefix: "flag",
+    marks: &[
+        Mark { frames: 14, arcsim_cpu_s: 20.0, arcsim_faces: [3938.0, 11_376.0] },
+        Mark { frames: 35, arcsim_cpu_s: 257.0, arcsim_faces: [9741.0, 21_623.0] },
+    ],
+    note: "with self-contact",
+};
+
+/// A sheet, a moving sphere and self-contact.
+pub(super) const SPHERE: Scene = Scene {
+    name: "sphere",
+    prefix: "contact.sphere",
+    marks: &[
+        Mark { frames: 25, arcsim_cpu_s: 6.1, arcsim_faces: [1426.0, 3263.0] },
+        Mark { frames: 221, arcsim_cpu_s: 333.0, arcsim_faces: [5931.0, 18_607.0] },
+    ],
+    note: "the faces of the longer part are those of 250 frames",
+};
+
+/// Runs the first frames of a scene and adds figures `….arcsim_…`.
+pub(super) fn run(context: &Context, report: &mut Report, scene: &Scene) -> Result<(), Failure> {
     let folder = folder(&context.root);
-    let scene = folder.join("conf/flag.json");
-    if !scene.is_file() {
-        let why = "ARCSim's own flag is left out: no conf/flag.json in the folder that \
-                   ORGANZA_ARCSIM names, nor in shared/arcsim beside the workspace.";
-        say(why);
-        report.remark(why);
+    let path = folder.join(format!("conf/{}.json", scene.name));
+    if !path.is_file() {
+        let why = format!(
+            "ARCSim's own {0} is left out: no conf/{0}.json in the folder that ORGANZA_ARCSIM \
+             names, nor in shared/arcsim beside the workspace.",
+            scene.name
+        );
+        say(&why);
+        report.remark(&why);
         return Ok(());
     }
-    let warnings = warnings(context, &scene, &folder)?;
+    let warnings = warnings(context, &path, &folder)?;
     let quick = context.options.quick;
-    for mark in MARKS.iter().take(if quick { 1 } else { MARKS.len() }) {
-        measure(context, report, mark, &scene, &warnings)?;
+    for mark in scene.marks.iter().take(if quick { 1 } else { scene.marks.len() }) {
+        measure(context, report, scene, mark, &path, &warnings)?;
         context.save(report)?;
     }
     if quick {
-        report.remark("The longer part of ARCSim's flag is left out of quick runs.");
+        report.remark(&format!(
+            "The longer part of ARCSim's {} is left out of quick runs.",
+            scene.name
+        ));
     }
     Ok(())
 }
@@ -65,6 +98,7 @@ fn sentences(warnings: &[String], folder: &Path) -> String {
 fn measure(
     context: &Context,
     report: &mut Report,
+    of: &Scene,
     mark: &Mark,
     scene: &Path,
     warnings: &str,
@@ -74,11 +108,11 @@ fn measure(
         scene: scene.to_owned(),
         frames: *frames,
         sets: Vec::new(),
-        out: context.runs().join(format!("flag_arcsim_{frames}.mcap")),
+        out: context.runs().join(format!("{}_arcsim_{frames}.mcap", of.name)),
     };
     let mut measured = Vec::new();
     for again in 1..=context.options.runs() {
-        say(format!("ARCSim's flag, run {again}: {frames} frames"));
+        say(format!("ARCSim's {}, run {again}: {frames} frames", of.name));
         let run = context.program.simulate(&simulation)?;
         let (cpu_s, ratio) = (run.cpu_s, run.cpu_s / arcsim_cpu_s);
         say(format!(
@@ -87,12 +121,13 @@ fn measure(
         measured.push(run);
     }
     let info = &measured[0].info;
-    let name = |what: &str| format!("flag.arcsim_{frames}_frames_{what}");
+    let name = |what: &str| format!("{}.arcsim_{frames}_frames_{what}", of.prefix);
     let times: Vec<f64> = measured.iter().map(|m| m.cpu_s).collect();
     let note = format!(
         "First {frames} frames, one thread, whole process, recording and picture included; median of \
          the runs. ARCSim 0.2.1 takes \
-         {arcsim_cpu_s:.1} s on a free core of an AMD EPYC, with self-contact.{}{warnings}",
+         {arcsim_cpu_s:.1} s on a free core of an AMD EPYC ({}).{}{warnings}",
+        of.note,
         info.troubles()
     );
     report.add(&name("cpu_s"), Figure::median(&times, "s", &note));
@@ -104,12 +139,17 @@ fn measure(
     let note = format!("Over {frames} frames. ARCSim: {arcsim_max} at most.");
     let most = info.max("/faces").and_then(|n| Figure::exact(n, "1", &note));
     report.add(&name("faces.max"), most);
-    let note = "Extreme principal stretch over all faces and frames; the scene's limits are 0.95 \
-                and 1.05.";
+    let note = "Extreme principal stretch over all faces and frames; the flag's limits are 0.95 and \
+                1.05, the sphere's cloth has none.";
     for (what, extreme) in
         [("stretch.min", info.min("/stretch/min")), ("stretch.max", info.max("/stretch/max"))]
     {
         report.add(&name(what), extreme.and_then(|x| Figure::exact(x, "1", note)));
+    }
+    let crossings = info.each("/crossings");
+    if !crossings.is_empty() {
+        let note = "Edges that pass through triangles, over all frames.";
+        report.add(&name("intersections"), Figure::exact(crossings.iter().sum(), "1", note));
     }
     Ok(())
 }

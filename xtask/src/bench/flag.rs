@@ -18,5 +18,5 @@ fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
     }
     fixed_or_adaptive::run(context, report, "flag", &context.root.join("scenes/flag.json5"))?;
     context.save(report)?;
-    arcsim::run(context, report)
+    arcsim::run(context, report, &arcsim::FLAG)
 }

@@ -5,6 +5,7 @@
 //! [`Report`].
 
 mod arcsim;
+mod contact;
 mod cpu_time;
 mod fixed_or_adaptive;
 mod flag;
@@ -41,7 +42,7 @@ struct Benchmark {
 }
 
 /// All benchmarks, in the order in which they run.
-const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK];
+const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK, contact::BENCHMARK];
 
 /// What a benchmark works with.
 struct Context {

@@ -84,6 +84,18 @@ impl Program {
         Ok(Measured { cpu_s, info })
     }
 
+    /// How many frames a scene has after the first.
+    ///
+    /// # Errors
+    /// If it is not a good scene.
+    pub(super) fn n_frames(&self, scene: &Path) -> Result<usize, Failure> {
+        let told = self.output(Command::new(&self.path).arg("check").arg(scene))?;
+        let frames = told.split_whitespace().zip(told.split_whitespace().skip(1));
+        let n =
+            frames.filter(|(_, what)| what.starts_with("frame")).find_map(|(n, _)| n.parse().ok());
+        n.ok_or_else(|| Failure::Unable(format!("{}: no number of frames", scene.display())))
+    }
+
     /// Writes frames 0 to `last` of a recording as `frame_00000.obj` and so on into a folder.
     ///
     /// # Errors

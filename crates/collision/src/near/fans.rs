@@ -14,19 +14,16 @@
 //! around the vertex, all triangles at a time, in single precision and in units of the longest edge; what
 //! is lost by that is added to the room.
 
-use super::quads::{RELATIVE, SLACK};
+use super::lanes::{self, bits, dot, lower, mark, minus, plus, reach, rejected, unit, upper};
 use crate::pairs::Body;
 use crate::rings;
 use mesh_core::{World3, par};
 
 /// A number for each triangle around a vertex.
 const LANES: usize = rings::MOST;
-type Row = [f32; LANES];
+type Row = lanes::Row<LANES>;
 /// Twice around, to look ahead by any number of triangles.
 type Twice = [f32; 2 * LANES];
-/// Vectors shorter than this have no direction (in units of the longest edge): the square of their
-/// length loses digits.
-const SHORT: f32 = 1e-15;
 
 /// All pairs of triangles around vertices with a ring whose features without a common vertex may be
 /// near. Of two that have an edge in common, and then belong to two vertices, none is given twice.
@@ -53,7 +50,7 @@ fn around(body: Body<'_>, p: usize, pairs: &mut Vec<[u32; 2]>) {
     for ahead in if is_closed { 2..n - 1 } else { 1..n } {
         let clear = fan.outer_edges_far(ahead);
         for i in 0..n {
-            far[i] |= u32::from(clear[i]) << ((i + ahead) % n);
+            far[i] |= (clear >> i & 1) << ((i + ahead) % n);
         }
     }
     for i in 0..n {
@@ -68,7 +65,7 @@ fn around(body: Body<'_>, p: usize, pairs: &mut Vec<[u32; 2]>) {
     for i in 0..if is_closed { n } else { n - 1 } {
         let q = ring[i + 1];
         let is_mine = (p as u32) < q || !covers(body, q);
-        if is_mine && !clear[i] {
+        if is_mine && clear >> i & 1 == 0 {
             pairs.push([triangles[i], triangles[(i + 1) % n]]);
         }
     }
@@ -110,12 +107,12 @@ impl Fan {
             *spoke = body.x_t0()[r as usize] - start;
             longest = longest.max(spoke.norm_squared());
         }
-        let unit = 1.0 / longest.sqrt();
+        let scale = 1.0 / longest.sqrt();
         let own = body.radius(p as u32);
         for (i, &r) in ring.iter().enumerate() {
-            let spoke = spokes[i] * unit;
-            let moved = (body.motion(r as usize) - motion) * unit;
-            let radius = (body.radius(r) * unit) as f32;
+            let spoke = spokes[i] * scale;
+            let moved = (body.motion(r as usize) - motion) * scale;
+            let radius = (body.radius(r) * scale) as f32;
             // The first corner of one triangle, and the second of that before it.
             for (side, at) in [(0, i), (1, i + n - 1)] {
                 let at = at % n;
@@ -130,16 +127,15 @@ impl Fan {
             }
         }
         for at in 0..LANES {
-            fan.radius[at] = fan.outer_radius[at].max((own * unit) as f32);
+            fan.radius[at] = fan.outer_radius[at].max((own * scale) as f32);
         }
         let (u, v) = (fan.spoke(0, 0), fan.spoke(1, 0));
         let side = minus(&v, &u);
         let (along, squared) = (dot(&u, &side), dot(&side, &side));
-        let share: Row = std::array::from_fn(|l| (-along[l] / squared[l]).clamp(0.0, 1.0));
-        let of = |k: usize| -> Row { std::array::from_fn(|l| u[k][l] + share[l] * side[k][l]) };
-        let outwards = unit_vector(&[of(0), of(1), of(2)]);
+        let share: Row = lanes::row(|l| 1.0 - above(1.0 - above(-along[l] / squared[l])));
+        let outwards = unit(&plus(&u, &share, &side));
         let height = lower(&dot(&outwards, &u), &dot(&outwards, &v));
-        let inwards = [unit_vector(&rejected(&v, &u)), unit_vector(&rejected(&u, &v))];
+        let inwards = [unit(&rejected(&v, &u)), unit(&rejected(&u, &v))];
         fan.height[..LANES].copy_from_slice(&height);
         for k in 0..3 {
             fan.outwards[k][..LANES].copy_from_slice(&outwards[k]);
@@ -156,14 +152,14 @@ impl Fan {
         fan
     }
 
-    #[inline]
+    #[inline(always)]
     fn spoke(&self, side: usize, ahead: usize) -> [Row; 3] {
         vector(&self.spokes[side], ahead)
     }
 
     /// For each triangle, whether its outer edge is far from all of the one so far ahead.
     #[inline]
-    fn outer_edges_far(&self, ahead: usize) -> [bool; LANES] {
+    fn outer_edges_far(&self, ahead: usize) -> u32 {
         let own = [self.spoke(0, 0), self.spoke(1, 0)];
         let other = [self.spoke(0, ahead), self.spoke(1, ahead)];
         let moved = [vector(&self.motions[0], 0), vector(&self.motions[1], 0)];
@@ -175,30 +171,29 @@ impl Fan {
                 most = upper(&most, &dot(&m, &m));
             }
         }
-        let reach = reach(&self.outer_radius, &row(&self.radius, ahead), &most);
+        let reach = reach(&row(&self.outer_radius, 0), &row(&self.radius, ahead), &most);
         let outwards = vector(&self.outwards, 0);
         let theirs = vector(&self.outwards, ahead);
         let beyond = upper(&dot(&outwards, &other[0]), &dot(&outwards, &other[1]));
         let behind = upper(&dot(&theirs, &own[0]), &dot(&theirs, &own[1]));
         let (height, low) = (row(&self.height, 0), row(&self.height, ahead));
-        let mut far: [bool; LANES] = std::array::from_fn(|l| {
-            (height[l] - beyond[l].max(0.0) > reach[l]) | (low[l].min(0.0) - behind[l] > reach[l])
-        });
+        let mut far = [0; LANES];
+        mark(&mut far, |l| height[l] - above(beyond[l]) > reach[l]);
+        mark(&mut far, |l| -above(-low[l]) - behind[l] > reach[l]);
         for side in 0..2 {
-            // All of the other triangle is on the inner side of its spokes.
             let inwards = vector(&self.inwards[side], ahead);
             let outside = upper(&dot(&inwards, &own[0]), &dot(&inwards, &own[1]));
-            for l in 0..LANES {
-                far[l] |= -outside[l] > reach[l];
-            }
+            // Zero but for rounding, which is not small on a triangle without area.
+            let least = lower(&dot(&inwards, &other[0]), &dot(&inwards, &other[1]));
+            mark(&mut far, |l| -above(-least[l]) - outside[l] > reach[l]);
         }
-        far
+        bits(&far)
     }
 
     /// For each triangle, whether all its features are far from those of the next one with which they
     /// have no vertex in common.
     #[inline]
-    fn followers_far(&self) -> [bool; LANES] {
+    fn followers_far(&self) -> u32 {
         let (a, q, b) = (self.spoke(0, 0), self.spoke(1, 0), self.spoke(1, 1));
         let of = |side: usize, ahead: usize| vector(&self.motions[side], ahead);
         let (m, n, o) = (of(0, 0), of(1, 0), of(1, 1));
@@ -206,12 +201,12 @@ impl Fan {
         for way in [m, n, o, minus(&m, &n), minus(&m, &o), minus(&n, &o)] {
             most = upper(&most, &dot(&way, &way));
         }
-        let reach = reach(&self.radius, &row(&self.radius, 1), &most);
+        let reach = reach(&row(&self.radius, 0), &row(&self.radius, 1), &most);
         // Across the common edge.
         let (to_a, to_b) = (vector(&self.inwards[1], 0), vector(&self.inwards[0], 1));
         let gap = |axis: &[Row; 3], near: &[Row; 3], far: [&[Row; 3]; 2]| -> Row {
             let (front, back) = (dot(axis, near), upper(&dot(axis, far[0]), &dot(axis, far[1])));
-            std::array::from_fn(|l| front[l] - back[l].max(0.0))
+            lanes::row(|l| front[l] - above(back[l]))
         };
         let first = gap(&to_a, &a, [&q, &b]);
         let second = gap(&to_b, &b, [&q, &a]);
@@ -221,81 +216,37 @@ impl Fan {
             let height = row(&self.height, ahead);
             let front = lower(&dot(side, &q), &dot(side, b));
             let behind = dot(side, a);
-            std::array::from_fn(|l| {
-                (height[l] - back[l].max(0.0)).max(front[l] - behind[l].max(0.0))
-            })
+            upper(
+                &lanes::row(|l| height[l] - above(back[l])),
+                &lanes::row(|l| front[l] - above(behind[l])),
+            )
         };
         let third = edges(1, &vector(&self.inwards[0], 0), &a, &b);
         let fourth = edges(0, &vector(&self.inwards[1], 1), &b, &a);
-        std::array::from_fn(|l| {
-            (first[l] > reach[l])
-                & (second[l] > reach[l])
-                & (third[l] > reach[l])
-                & (fourth[l] > reach[l])
-        })
+        // One by one: what is no number must not be lost in a minimum.
+        let far = |gap: &Row| {
+            let mut far = [0; LANES];
+            mark(&mut far, |l| gap[l] > reach[l]);
+            bits(&far)
+        };
+        far(&first) & far(&second) & far(&third) & far(&fourth)
     }
 }
 
-/// How near things with these radii may be without coming into contact, with this square of their
-/// greatest relative motion.
-#[inline]
-fn reach(radius: &Twice, other: &Row, squared: &Row) -> Row {
-    std::array::from_fn(|l| (radius[l] + other[l] + squared[l].sqrt()) * (1.0 + RELATIVE) + SLACK)
+/// The greater of a number and zero.
+#[inline(always)]
+fn above(x: f32) -> f32 {
+    if x > 0.0 { x } else { 0.0 }
 }
 
-#[inline]
+#[inline(always)]
 fn row(twice: &Twice, ahead: usize) -> Row {
     let mut row = [0.0; LANES];
     row.copy_from_slice(&twice[ahead..ahead + LANES]);
     row
 }
 
-#[inline]
+#[inline(always)]
 fn vector(twice: &[Twice; 3], ahead: usize) -> [Row; 3] {
     [row(&twice[0], ahead), row(&twice[1], ahead), row(&twice[2], ahead)]
-}
-
-#[inline]
-fn dot(a: &[Row; 3], b: &[Row; 3]) -> Row {
-    std::array::from_fn(|l| a[0][l] * b[0][l] + a[1][l] * b[1][l] + a[2][l] * b[2][l])
-}
-
-#[inline]
-fn minus(a: &[Row; 3], b: &[Row; 3]) -> [Row; 3] {
-    let of = |k: usize| -> Row { std::array::from_fn(|l| a[k][l] - b[k][l]) };
-    [of(0), of(1), of(2)]
-}
-
-// What is no number, in either place, stays so or makes its lane's vectors useless: see `Fan::reach`.
-#[inline]
-fn upper(a: &Row, b: &Row) -> Row {
-    std::array::from_fn(|l| if a[l] > b[l] { a[l] } else { b[l] })
-}
-
-#[inline]
-fn lower(a: &Row, b: &Row) -> Row {
-    std::array::from_fn(|l| if a[l] < b[l] { a[l] } else { b[l] })
-}
-
-/// The part of `a` across `b`.
-#[inline]
-fn rejected(a: &[Row; 3], b: &[Row; 3]) -> [Row; 3] {
-    let (along, squared) = (dot(a, b), dot(b, b));
-    let share: Row = std::array::from_fn(|l| along[l] / squared[l]);
-    let of = |k: usize| -> Row { std::array::from_fn(|l| a[k][l] - share[l] * b[k][l]) };
-    [of(0), of(1), of(2)]
-}
-
-/// The unit vector, or none if the vector is too short.
-#[inline]
-fn unit_vector(a: &[Row; 3]) -> [Row; 3] {
-    let squared = dot(a, a);
-    let by: Row =
-        std::array::from_fn(
-            |l| {
-                if squared[l] > SHORT * SHORT { 1.0 / squared[l].sqrt() } else { 0.0 }
-            },
-        );
-    let of = |k: usize| -> Row { std::array::from_fn(|l| a[k][l] * by[l]) };
-    [of(0), of(1), of(2)]
 }

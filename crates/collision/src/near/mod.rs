@@ -5,12 +5,13 @@
 //! axes ([`quads`]), and pairs of features by their distance.
 
 mod fans;
+mod lanes;
 mod quads;
 
 use crate::pairs::{Body, Candidate, Pair, PairKind};
 use crate::{Aabb, Bvh, distance};
 use mesh_core::{World3, par};
-use quads::{Frame, Quads};
+use quads::{Frame, Quad, Quads};
 
 /// As [`near_within`](crate::swept::near_within).
 pub(crate) fn within(
@@ -26,22 +27,21 @@ pub(crate) fn within(
     pairs.extend(par::collect(groups.len(), |g, pairs| {
         let [s, t] = groups[g];
         let (first, second) = (quads.of(s), quads.of(t));
-        for i in 0..4 {
-            let meets = first.may_meet(i, second);
-            for j in (0..4).filter(|&j| meets[j] && (s != t || i < j)) {
-                pairs.push([first.triangles[i], second.triangles[j]]);
-            }
-        }
+        // Of a group with itself, each pair once.
+        let of = if s == t { 0b1000_1100_1110 } else { 0xffff };
+        let hits = first.without_common(second, first.overlaps(second) & of);
+        for_each_meeting(first, second, hits, |a, b| pairs.push([a, b]));
     }));
     let surface = body.surface();
     let found = par::collect(pairs.len(), |i, found| {
         let [a, b] = pairs[i];
+        let reach = reach_of((body, a), (body, b));
         for (owner, other) in [(a, b), (b, a)] {
             let corners = surface.triangles()[other as usize];
             for v in surface.owned_vertices(owner) {
                 if !corners.contains(&v) {
                     let pair = Pair { kind: PairKind::VertexTriangle, a: v, b: other };
-                    found.extend(near(pair, body, body, &most));
+                    found.extend(near(pair, body, body, reach, &most));
                 }
             }
         }
@@ -51,7 +51,7 @@ pub(crate) fn within(
                 let [r, s] = surface.edges()[f as usize];
                 if (p != r) & (p != s) & (q != r) & (q != s) {
                     let pair = Pair { kind: PairKind::EdgeEdge, a: e.min(f), b: e.max(f) };
-                    found.extend(near(pair, body, body, &most));
+                    found.extend(near(pair, body, body, reach, &most));
                 }
             }
         }
@@ -86,40 +86,39 @@ pub(crate) fn between(
     let any = |_: &[u32; 4], _: PairKind| f64::INFINITY;
     let found = par::collect(groups.len(), |g, found| {
         let (first, second) = (first.of(groups[g][0]), second.of(groups[g][1]));
-        for i in 0..4 {
-            let meets = first.may_meet(i, second);
-            for j in (0..4).filter(|&j| meets[j]) {
-                let (s, t) = (first.triangles[i], second.triangles[j]);
-                for v in surface.owned_vertices(s) {
-                    found.extend(near(
-                        Pair { kind: PairKind::VertexTriangle, a: v, b: t },
-                        a,
-                        b,
-                        &any,
-                    ));
-                }
-                for v in other.owned_vertices(t) {
-                    found.extend(near(
-                        Pair { kind: PairKind::TriangleVertex, a: s, b: v },
-                        a,
-                        b,
-                        &any,
-                    ));
-                }
-                for e in surface.owned_edges(s) {
-                    for f in other.owned_edges(t) {
-                        found.extend(near(
-                            Pair { kind: PairKind::EdgeEdge, a: e, b: f },
-                            a,
-                            b,
-                            &any,
-                        ));
-                    }
+        for_each_meeting(first, second, first.overlaps(second), |s, t| {
+            let reach = reach_of((a, s), (b, t));
+            let mut look = |pair: Pair| found.extend(near(pair, a, b, reach, &any));
+            for v in surface.owned_vertices(s) {
+                look(Pair { kind: PairKind::VertexTriangle, a: v, b: t });
+            }
+            for v in other.owned_vertices(t) {
+                look(Pair { kind: PairKind::TriangleVertex, a: s, b: v });
+            }
+            for e in surface.owned_edges(s) {
+                for f in other.owned_edges(t) {
+                    look(Pair { kind: PairKind::EdgeEdge, a: e, b: f });
                 }
             }
-        }
+        });
     });
     sorted(found)
+}
+
+/// Calls `found` with all pairs of triangles of two quads that may meet, of those with a bit in `hits`:
+/// bit 4 i + j for triangle `i` of the first and `j` of the second.
+#[inline]
+fn for_each_meeting(first: &Quad, second: &Quad, hits: u32, mut found: impl FnMut(u32, u32)) {
+    let mut rest = hits;
+    while rest != 0 {
+        let i = rest.trailing_zeros() as usize / 4;
+        let mut hits = rest >> (4 * i) & 0xf & first.may_meet(i, second);
+        rest &= !(0xf << (4 * i));
+        while hits != 0 {
+            found(first.triangles[i], second.triangles[hits.trailing_zeros() as usize]);
+            hits &= hits - 1;
+        }
+    }
 }
 
 fn sorted(mut found: Vec<(Pair, f64)>) -> Vec<(Pair, f64)> {
@@ -127,39 +126,66 @@ fn sorted(mut found: Vec<(Pair, f64)>) -> Vec<(Pair, f64)> {
     found
 }
 
+/// The tolerance of what two things can reach is far above rounding, so that nothing is missed by it.
+const ROUNDING: f64 = 1e-9;
+
+/// The most that features of two triangles can reach on the way (m).
+#[inline]
+fn reach_of((a, s): (Body<'_>, u32), (b, t): (Body<'_>, u32)) -> f64 {
+    let (first, second) =
+        (&a.surface().triangles()[s as usize], &b.surface().triangles()[t as usize]);
+    let motions = second.map(|v| b.motion(v as usize));
+    let mut most: f64 = 0.0;
+    for &v in first {
+        let motion = a.motion(v as usize);
+        for other in &motions {
+            most = most.max((motion - other).norm_squared());
+        }
+    }
+    (most.sqrt() + (a.radius_of(first) + b.radius_of(second))) * (1.0 + ROUNDING)
+}
+
 /// A pair with its distance at the start, if the relative motion can use it up and the swept boxes
-/// overlap.
+/// overlap. It certainly reaches no further than `most`, and its thickness counts
+/// up to a limit.
 #[inline]
 fn near(
     pair: Pair,
     a: Body<'_>,
     b: Body<'_>,
+    most: f64,
     limit: &impl Fn(&[u32; 4], PairKind) -> f64,
 ) -> Option<(Pair, f64)> {
-    let Candidate { x_t0, x_t1, thickness, .. } = &Candidate::of(pair, a, b);
-    let thickness = thickness.min(limit(&pair.vertices(a.surface(), b.surface()), pair.kind));
-    let m: [World3; 4] = std::array::from_fn(|k| x_t1[k] - x_t0[k]);
-    let apart = |a: usize, b: usize| (m[a] - m[b]).norm_squared();
+    let vertices = pair.vertices(a.surface(), b.surface());
+    let x = &pair.positions(vertices, a.x_t0(), b.x_t0());
     let is_edges = pair.kind == PairKind::EdgeEdge;
+    // A gap along the line of points that are nearest if rounding does no harm, which tells most often:
+    // the distance itself, right for all elements, takes several times longer.
+    let axis = if is_edges { between_edges(x) } else { to_triangle(x) };
+    let [p, q, r, s] = x.map(|y| axis.dot(&(y - x[0])));
+    let gap = if is_edges { p.min(q) - r.max(s) } else { p - q.max(r).max(s) };
+    let length = axis.norm_squared() * (1.0 + 1e-6);
+    let is_beyond = |reach: f64| gap > 0.0 && gap * gap > reach * reach * length;
+    if is_beyond(most) {
+        return None;
+    }
+    let Candidate { x_t1, thickness, .. } = &Candidate::of(pair, a, b);
+    let thickness = thickness.min(limit(&vertices, pair.kind));
+    let m: [World3; 4] = std::array::from_fn(|k| x_t1[k] - x[k]);
+    let apart = |a: usize, b: usize| (m[a] - m[b]).norm_squared();
     let most = if is_edges {
         apart(0, 2).max(apart(0, 3)).max(apart(1, 2)).max(apart(1, 3))
     } else {
         apart(0, 1).max(apart(0, 2)).max(apart(0, 3))
     };
-    // The tolerance is far above rounding, so that nothing is missed by it.
-    let reach = (most.sqrt() + thickness) * (1.0 + 1e-9);
-    // A gap along the line of points that are nearest if rounding does no harm, which tells most often:
-    // the distance itself, right for all elements, takes several times longer.
-    let axis = if is_edges { between_edges(x_t0) } else { to_triangle(x_t0) };
-    let [p, q, r, s] = x_t0.map(|x| axis.dot(&(x - x_t0[0])));
-    let gap = if is_edges { p.min(q) - r.max(s) } else { p - q.max(r).max(s) };
-    if gap > 0.0 && gap * gap > reach * reach * axis.norm_squared() * (1.0 + 1e-6) {
+    let reach = (most.sqrt() + thickness) * (1.0 + ROUNDING);
+    if is_beyond(reach) {
         return None;
     }
     let squared = if is_edges {
-        distance::edge_edge(x_t0).squared
+        distance::edge_edge(x).squared
     } else {
-        distance::vertex_triangle(x_t0).squared
+        distance::vertex_triangle(x).squared
     };
     let is_near = squared <= reach * reach && boxes_overlap(pair, a, b);
     is_near.then(|| (pair, squared.sqrt()))

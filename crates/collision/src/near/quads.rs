@@ -3,20 +3,16 @@
 //! Positions are in single precision, in units in which all of them are between −1 and 1; what they lose
 //! by it is added to the room between things.
 
+use super::lanes::{
+    Row, Vector, bits, cross, dot, lower, mark, minus, plus, reach, row, unit, upper, widened,
+};
 use crate::pairs::Body;
 use crate::{Aabb, Bvh};
 use mesh_core::{World3, par};
 
-/// A number for each of four triangles.
-type Four = [f32; 4];
-
-/// More than the rounding errors of a gap between points whose coordinates are at most 1: those of the
-/// points are 2⁻²⁴ and less, and those of the some ten operations on them not much larger.
-pub(super) const SLACK: f32 = 4e-6;
-/// More than the rounding errors of a length by its size (1).
-pub(super) const RELATIVE: f32 = 1e-5;
-/// The key of a vertex that is common to nothing, in the first and in the second triangle.
-const NO_KEY: [u32; 2] = [u32::MAX, u32::MAX - 1];
+/// A number for each of four triangles, and a vector.
+type Four = Row<4>;
+type Fours = Vector<4>;
 
 /// Units of length in which all positions are from −1 to 1.
 #[derive(Clone, Copy)]
@@ -40,17 +36,21 @@ impl Frame {
 /// Four triangles that are next to each other in the tree.
 #[derive(Clone)]
 pub(super) struct Quad {
-    lo: [Four; 3],
-    hi: [Four; 3],
-    corners: [[Four; 3]; 3],
+    lo: Fours,
+    hi: Fours,
+    corners: [Fours; 3],
     /// In the plane of the triangle out of each edge, and its normal: unit vectors, or zero.
-    axes: [[Four; 3]; 4],
+    axes: [Fours; 4],
     /// How far the triangle reaches along each.
-    ends: [Four; 4],
-    motion: [Four; 3],
+    reaches: [Four; 4],
+    /// Where it begins along the normal.
+    low: Four,
+    motion: Fours,
     /// Radius, and by what the corners' motions differ from their mean at most.
     room: Four,
-    keys: [[u32; 4]; 3],
+    /// The corners of each triangle. Those that are not covered have numbers from the top that differ for
+    /// each triangle: with no more than 2³² corners and vertices in all they are no vertices.
+    keys: [[u32; 3]; 4],
     pub(super) triangles: [u32; 4],
 }
 
@@ -63,138 +63,138 @@ impl Quad {
         triangles: &[u32],
         is_covered: impl Fn(u32) -> bool + Sync,
     ) -> Quad {
-        let zero = [0.0; 4];
-        let mut quad = Quad {
-            lo: [[f32::INFINITY; 4]; 3],
-            hi: [[f32::NEG_INFINITY; 4]; 3],
-            corners: [[zero; 3]; 3],
-            axes: [[zero; 3]; 4],
-            ends: [zero; 4],
-            motion: [zero; 3],
-            room: zero,
-            keys: [[NO_KEY[0]; 4]; 3],
-            triangles: [u32::MAX; 4],
-        };
+        let zero = [[0.0; 4]; 3];
+        let (mut corners, mut ends, mut radius) = ([zero; 3], [zero; 3], [0.0; 4]);
+        let (mut keys, mut list) = ([[u32::MAX; 3]; 4], [u32::MAX; 4]);
         for (l, &t) in triangles.iter().enumerate() {
-            quad.set(l, t, body, frame, &is_covered);
-        }
-        quad
-    }
-
-    fn set(
-        &mut self,
-        l: usize,
-        t: u32,
-        body: Body<'_>,
-        frame: &Frame,
-        is_covered: impl Fn(u32) -> bool + Sync,
-    ) {
-        let vertices = body.surface().triangles()[t as usize];
-        let scaled = |x: &World3| (x - frame.origin) * frame.scale;
-        let x = vertices.map(|v| scaled(&body.x_t0()[v as usize]));
-        let end = vertices.map(|v| scaled(&body.x_t1()[v as usize]));
-        let moved: [World3; 3] = std::array::from_fn(|c| end[c] - x[c]);
-        let motion = (moved[0] + moved[1] + moved[2]) / 3.0;
-        let spread = moved.map(|m| (m - motion).norm_squared()).into_iter().fold(0.0, f64::max);
-        let radius = body.radius_of(&vertices) * frame.scale;
-        let normal = (x[1] - x[0]).cross(&(x[2] - x[0]));
-        let axes: [World3; 4] = std::array::from_fn(|k| {
-            let axis = if k < 3 { (x[(k + 1) % 3] - x[k]).cross(&normal) } else { normal };
-            let length = axis.norm();
-            if length > 0.0 { axis / length } else { World3::zeros() }
-        });
-        let around = Aabb::around(x.iter().chain(&end));
-        for k in 0..3 {
-            self.lo[k][l] = (around.lo[k] - radius) as f32 - SLACK;
-            self.hi[k][l] = (around.hi[k] + radius) as f32 + SLACK;
-            self.motion[k][l] = motion[k] as f32;
-            for c in 0..3 {
-                self.corners[c][k][l] = x[c][k] as f32;
-            }
-            for c in 0..4 {
-                self.axes[c][k][l] = axes[c][k] as f32;
-            }
-            let v = vertices[k];
-            self.keys[k][l] = if is_covered(v) { v } else { NO_KEY[0] };
-        }
-        for c in 0..4 {
-            let reach = x.map(|x| axes[c].dot(&x));
-            self.ends[c][l] = reach[0].max(reach[1]).max(reach[2]) as f32;
-        }
-        self.room[l] = (radius + spread.sqrt()) as f32;
-        self.triangles[l] = t;
-    }
-
-    /// Which triangles of `other` may come near triangle `i` of this: those whose swept boxes overlap its
-    /// own, and which no axis separates by more than radii and relative motion. Those with a covered
-    /// vertex in common are left out. A comparison with what is no number separates nothing.
-    #[inline]
-    pub(super) fn may_meet(&self, i: usize, other: &Quad) -> [bool; 4] {
-        let mut apart = [false; 4];
-        for k in 0..3 {
-            let (lo, hi) = (self.lo[k][i], self.hi[k][i]);
-            for l in 0..4 {
-                apart[l] |= (lo > other.hi[k][l]) | (other.lo[k][l] > hi);
-            }
-        }
-        if apart == [true; 4] {
-            return [false; 4];
-        }
-        for c in 0..3 {
-            let key = self.keys[c][i];
-            let key = if key == NO_KEY[0] { NO_KEY[1] } else { key };
-            for d in 0..3 {
-                for l in 0..4 {
-                    apart[l] |= key == other.keys[d][l];
+            let vertices = body.surface().triangles()[t as usize];
+            for (c, v) in vertices.into_iter().enumerate() {
+                let x = (body.x_t0()[v as usize] - frame.origin) * frame.scale;
+                let end = (body.x_t1()[v as usize] - frame.origin) * frame.scale;
+                for k in 0..3 {
+                    corners[c][k][l] = x[k] as f32;
+                    ends[c][k][l] = end[k] as f32;
                 }
+                keys[l][c] = if is_covered(v) { v } else { u32::MAX - (3 * t + c as u32) };
             }
+            radius[l] = (body.radius_of(&vertices) * frame.scale) as f32;
+            list[l] = t;
         }
-        if apart == [true; 4] {
-            return [false; 4];
-        }
-        let mut squared = [0.0; 4];
+        let (mut lo, mut hi) = ([[f32::INFINITY; 4]; 3], [[f32::NEG_INFINITY; 4]; 3]);
         for k in 0..3 {
-            let motion = self.motion[k][i];
-            for l in 0..4 {
-                let m = other.motion[k][l] - motion;
-                squared[l] += m * m;
+            let row = |x: &[Fours; 3]| [x[0][k], x[1][k], x[2][k]];
+            let ([a, b, c], [d, e, f]) = (row(&corners), row(&ends));
+            let least = lower(&lower(&lower(&a, &b), &lower(&c, &d)), &lower(&e, &f));
+            let most = upper(&upper(&upper(&a, &b), &upper(&c, &d)), &upper(&e, &f));
+            for l in 0..triangles.len() {
+                [lo[k][l], hi[k][l]] = widened(least[l], most[l], radius[l]);
             }
         }
-        let reach: Four = std::array::from_fn(|l| {
-            (self.room[i] + other.room[l] + squared[l].sqrt()) * (1.0 + RELATIVE) + SLACK
-        });
-        let of = |a: &[Four; 3]| [a[0][i], a[1][i], a[2][i]].map(|x| [x; 4]);
+        let moved = [
+            minus(&ends[0], &corners[0]),
+            minus(&ends[1], &corners[1]),
+            minus(&ends[2], &corners[2]),
+        ];
+        let third = [1.0 / 3.0; 4];
+        let motion =
+            plus(&plus(&plus(&zero, &third, &moved[0]), &third, &moved[1]), &third, &moved[2]);
+        let mut spread = [0.0; 4];
+        for m in &moved {
+            let off = minus(m, &motion);
+            spread = upper(&spread, &dot(&off, &off));
+        }
+        let sides = [
+            minus(&corners[1], &corners[0]),
+            minus(&corners[2], &corners[1]),
+            minus(&corners[0], &corners[2]),
+        ];
+        let normal = unit(&cross(&sides[0], &sides[1]));
+        let out = |c: usize| unit(&cross(&sides[c], &normal));
+        let axes = [out(0), out(1), out(2), normal];
+        let reaches = axes.map(|axis| span(&axis, &corners)[1]);
+        Quad {
+            lo,
+            hi,
+            corners,
+            axes,
+            reaches,
+            low: span(&normal, &corners)[0],
+            motion,
+            room: row(|l| radius[l] + spread[l].sqrt()),
+            keys,
+            triangles: list,
+        }
+    }
+
+    /// Bit 4 i + j: whether the boxes of triangle `i` of this and triangle `j` of `other` overlap. What is
+    /// no number separates nothing.
+    #[inline]
+    pub(super) fn overlaps(&self, other: &Quad) -> u32 {
+        // All without a branch, which would go wrong most often.
+        let mut hits = [0; 4];
+        for i in 0..4 {
+            let mut gap = [f32::NEG_INFINITY; 4];
+            for k in 0..3 {
+                let (lo, hi) = ([self.lo[k][i]; 4], [self.hi[k][i]; 4]);
+                gap = upper(&row(|l| lo[l] - other.hi[k][l]), &gap);
+                gap = upper(&row(|l| other.lo[k][l] - hi[l]), &gap);
+            }
+            for l in 0..4 {
+                hits[l] |= if gap[l] > 0.0 { 0 } else { 1u32 << (4 * i + l) };
+            }
+        }
+        hits[0] | hits[1] | hits[2] | hits[3]
+    }
+
+    /// Those of the bits `hits` of two quads of a body that stand for triangles without a covered vertex
+    /// in common.
+    #[inline]
+    pub(super) fn without_common(&self, other: &Quad, hits: u32) -> u32 {
+        let (mut apart, mut rest) = (0, hits);
+        while rest != 0 {
+            let bit = rest.trailing_zeros();
+            let [a, b, c] = self.keys[bit as usize / 4];
+            let [d, e, f] = other.keys[bit as usize % 4];
+            let is_common = (a == d) | (a == e) | (a == f) | (b == d) | (b == e) | (b == f);
+            let is_common = is_common | (c == d) | (c == e) | (c == f);
+            apart |= u32::from(!is_common) << bit;
+            rest &= rest - 1;
+        }
+        apart
+    }
+
+    /// For each triangle of `other`, a bit: whether it may come near triangle `i` of this, because none
+    /// of their axes separates them by more than radii and relative motion.
+    pub(super) fn may_meet(&self, i: usize, other: &Quad) -> u32 {
+        let of = |a: &Fours| [[a[0][i]; 4], [a[1][i]; 4], [a[2][i]; 4]];
+        let way = minus(&other.motion, &of(&self.motion));
+        let reach = reach(&[self.room[i]; 4], &other.room, &dot(&way, &way));
         let corners = [of(&self.corners[0]), of(&self.corners[1]), of(&self.corners[2])];
-        for c in 0..4 {
-            let own = span(&of(&self.axes[c]), &other.corners);
-            let theirs = span(&other.axes[c], &corners);
-            for l in 0..4 {
-                apart[l] |= own[0][l] - self.ends[c][i] > reach[l];
-                apart[l] |= theirs[0][l] - other.ends[c][l] > reach[l];
-                // The fourth axis is the normal, of which both sides count.
-                apart[l] |= (c == 3) & (self.ends[c][i] - own[1][l] > reach[l]);
-                apart[l] |= (c == 3) & (other.ends[c][l] - theirs[1][l] > reach[l]);
-            }
+        let mut apart = [0; 4];
+        for c in 0..3 {
+            let own = span(&of(&self.axes[c]), &other.corners)[0];
+            let theirs = span(&other.axes[c], &corners)[0];
+            let reaches = self.reaches[c][i];
+            mark(&mut apart, |l| own[l] - reaches > reach[l]);
+            mark(&mut apart, |l| theirs[l] - other.reaches[c][l] > reach[l]);
         }
-        apart.map(|apart| !apart)
+        // The normals, of which both sides count.
+        let own = span(&of(&self.axes[3]), &other.corners);
+        let theirs = span(&other.axes[3], &corners);
+        let (low, high) = (self.low[i], self.reaches[3][i]);
+        mark(&mut apart, |l| own[0][l] - high > reach[l]);
+        mark(&mut apart, |l| low - own[1][l] > reach[l]);
+        mark(&mut apart, |l| theirs[0][l] - other.reaches[3][l] > reach[l]);
+        mark(&mut apart, |l| other.low[l] - theirs[1][l] > reach[l]);
+        !bits(&apart) & 0b1111
     }
 }
 
 /// The least and the greatest product of an axis with three corners.
-#[inline]
-fn span(axis: &[Four; 3], corners: &[[Four; 3]; 3]) -> [Four; 2] {
-    let dot = |x: &[Four; 3]| -> Four {
-        std::array::from_fn(|l| axis[0][l] * x[0][l] + axis[1][l] * x[1][l] + axis[2][l] * x[2][l])
-    };
-    let [p, q, r] = [dot(&corners[0]), dot(&corners[1]), dot(&corners[2])];
-    // Not by `f32::min`, which does more about what is no number; such a corner is lost here only if its
-    // triangle is beyond help anyway.
-    let lower = |a: f32, b: f32| if a < b { a } else { b };
-    let upper = |a: f32, b: f32| if a > b { a } else { b };
-    [
-        std::array::from_fn(|l| lower(lower(p[l], q[l]), r[l])),
-        std::array::from_fn(|l| upper(upper(p[l], q[l]), r[l])),
-    ]
+#[inline(always)]
+fn span(axis: &Fours, corners: &[Fours; 3]) -> [Four; 2] {
+    let [p, q, r] = [dot(axis, &corners[0]), dot(axis, &corners[1]), dot(axis, &corners[2])];
+    [lower(&lower(&p, &q), &r), upper(&upper(&p, &q), &r)]
 }
 
 /// The groups of a tree that are needed, as quads.

@@ -44,7 +44,7 @@ pub struct ContactSettings {
 /// Share of the thickness below which a gap that no energy keeps open is worth one.
 const OVERLOOKED: f64 = 0.5;
 /// By what the stiffness of things grows at most that are pressed together.
-const MOST_PRESSED: f64 = 10.0;
+const MOST_PRESSED: f64 = 100.0;
 /// Speed at which things that are nearer than their thickness go apart at most (m/s): without it,
 /// whatever brings them nearer at once, an impact or an edit of the mesh, would throw them apart.
 const RECOVERY: f64 = 0.1;
@@ -314,9 +314,8 @@ impl Contact for SurfaceContact {
     }
 
     fn look(&mut self, x: &[World3]) -> bool {
-        let x_t0 = std::mem::take(&mut self.x_t0);
-        self.cover(&x_t0, x);
-        self.x_t0 = x_t0;
+        // Those that are not candidates are found when the way is secured: a search costs more than it
+        // gains here.
         let known: HashSet<[u32; 5]> = self.touches.iter().map(|t| t.sides.key()).collect();
         let pairs = &self.candidates.pairs;
         let more = par::collect(pairs.len(), |k, more| {

@@ -1,12 +1,13 @@
 //! The search for pairs that may touch.
 
+use super::candidates::Candidates;
 use super::{SurfaceContact, pair::Sides};
 use collision::{Aabb, Body, Pair, PairKind, swept};
 use mesh_core::{World3, par};
 
-/// Shares of the thickness by which a vertex may be off its expected way before candidates are sought
-/// anew: where all goes as expected, and where much does not.
-const ROOM: [f64; 2] = [0.15, 0.6];
+/// Share of the thickness by which a vertex may be off its expected way before candidates are sought
+/// anew. More would save few searches and make each much dearer.
+const ROOM: f64 = 0.1;
 
 impl SurfaceContact {
     /// Makes the candidates complete for the way of the cloth from `x` to `x_t1` (m), while obstacles go
@@ -26,10 +27,8 @@ impl SurfaceContact {
 
     /// Finds candidates anew, for this way and for what is near it.
     fn search(&mut self, x: &[World3], x_t1: &[World3]) {
-        let [least, most] = ROOM.map(|share| share * self.settings.thickness);
-        self.candidates.learn([x, x_t1], least, most);
-        let off = &self.candidates.room;
-        let radius = |v: u32| self.radius[v as usize] + off[v as usize];
+        let off = ROOM * self.settings.thickness;
+        let radius = |v: u32| self.radius[v as usize] + off;
         let mut found: Vec<(usize, Pair, f64)> = Vec::new();
         if self.settings.self_contact {
             // What all of it has in common brings nothing nearer.
@@ -41,21 +40,19 @@ impl SurfaceContact {
             body.update_tree(&mut self.cloth_tree);
             let pairs = swept::near_within(body, &self.cloth_tree, |vertices, kind| {
                 let n_first = if kind == PairKind::EdgeEdge { 2 } else { 1 };
-                let room = |of: &[u32]| of.iter().map(|&v| off[v as usize]).fold(0.0, f64::max);
-                let (first, second) = vertices.split_at(n_first);
-                self.rest.most(vertices, n_first) + room(first) + room(second)
+                self.rest.most(vertices, n_first) + 2.0 * off
             });
             found.extend(pairs.into_iter().map(|(pair, distance)| (0, pair, distance)));
         }
         if let Some(moving) = &mut self.obstacles {
             let settings = &self.settings;
             let halves: Vec<f64> =
-                (0..moving.now.len() as u32).map(|v| moving.radius(v, settings) + least).collect();
+                (0..moving.now.len() as u32).map(|v| moving.radius(v, settings) + off).collect();
             let largest = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
             let around = |points: [&[World3]; 2], room: f64| {
                 Aabb::around(points.into_iter().flatten()).grown(room)
             };
-            let room = largest(&self.radius) + largest(&halves) + most;
+            let room = largest(&self.radius) + largest(&halves) + off;
             let is_near =
                 around([x, x_t1], room).overlaps(&around([&moving.now, &moving.then], room));
             if is_near {
@@ -78,18 +75,12 @@ impl SurfaceContact {
             let sides = self.sides(set, pair);
             let (from, to) = (self.corners_now(&sides, x), self.corners_then(&sides, x_t1));
             let left = distance - sides.relative_motion(&from, &to);
-            let room = |first: bool| {
-                let of = |k: usize| {
-                    if sides.is_cloth[k] { off[sides.vertices[k] as usize] } else { least }
-                };
-                (0..4).filter(|&k| sides.is_first[k] == first).map(of).fold(0.0, f64::max)
-            };
-            (left <= sides.thickness + room(true) + room(false)).then_some(sides)
+            (left <= sides.thickness + 2.0 * off).then_some(sides)
         });
         let pairs = pairs.into_iter().flatten().collect();
         let (now, then): (&[World3], &[World3]) =
             self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then));
-        self.candidates.set(pairs, [x, x_t1], [now, then]);
+        self.candidates = Candidates::new(pairs, off, [x, x_t1], [now, then]);
     }
 
     /// Where things of a pair are: `set` is 0 within the cloth and 1 with obstacles.

@@ -72,14 +72,16 @@ pub(super) fn approach(
     thickness: f64,
 ) -> Option<ClosestPoints> {
     let motion = sides.relative_motion(x_t0, x_t1);
+    if motion == 0.0 && start.distance >= thickness {
+        return None;
+    }
     let (mut t, mut closest) = (0.0, start);
     for _ in 0..MAX_STEPS {
         if closest.distance < thickness {
             break;
         }
         t += (closest.distance - LANDING * thickness) / motion;
-        // Not a number where nothing moves.
-        if !(t < 1.0) {
+        if t >= 1.0 {
             return None;
         }
         closest = sides.closest(&std::array::from_fn(|k| x_t0[k] + (x_t1[k] - x_t0[k]) * t));
