@@ -248,7 +248,7 @@ impl World {
             self.step(Step { time, h }, frame, 0, &mut solve, &mut retries, &mut seconds)?;
         }
         let stretch = StretchRange::of(&self.cloth);
-        let mut remesh = None;
+        let mut remeshed = None;
         let mut n_crossings = 0;
         if let Some(remeshing) = &self.remeshing {
             let (before, next) = (self.cloth.mesh.uids().to_vec(), self.cloth.mesh.next_uid());
@@ -256,9 +256,9 @@ impl World {
             let error = |source| StepError::Remesh { frame, source };
             let saved = self.contact.is_some().then(|| self.cloth.clone());
             let run = |cloth: &mut ClothState, hold: &[u64]| {
-                remeshing.run(cloth, &keep, hold).map_err(error)
+                remeshing.run(cloth, frame as f64 * self.frame_s, &keep, hold).map_err(error)
             };
-            let (mut report, mut times) = run(&mut self.cloth, &[])?;
+            let mut done = run(&mut self.cloth, &[])?;
             if let Some(saved) = saved {
                 // Where flips and collapses took cloth through something, only splits are made next
                 // time; in the end, everywhere.
@@ -266,31 +266,33 @@ impl World {
                 for round in 0..=HOLD_ROUNDS {
                     let crossings = self.crossings(frame);
                     n_crossings = crossings.as_ref().map_or(0, |crossings| crossings.n);
-                    let Some(crossings) = crossings.filter(|_| report.n_edits() > 0) else { break };
+                    let Some(crossings) = crossings.filter(|_| done.report.n_edits() > 0) else {
+                        break;
+                    };
                     self.cloth = saved.clone();
                     hold.extend(crossings.vertices_near(&self.cloth));
                     if round == HOLD_ROUNDS {
                         hold = self.cloth.mesh.uids().to_vec();
                     }
-                    (report, times) = run(&mut self.cloth, &hold)?;
+                    done = run(&mut self.cloth, &hold)?;
                 }
             }
-            if report.n_edits() > 0 {
+            if done.report.n_edits() > 0 {
                 self.prepared = None;
-                self.handles.follow(&before, next, &report.journal);
+                self.handles.follow(&before, next, &done.report.journal);
             }
-            seconds.sizing = times[0];
-            seconds.remesh = times[1];
-            remesh = Some(report);
+            (seconds.view, seconds.sizing) = (done.view_s, done.sizing_s);
+            seconds.remesh = done.edits_s;
+            remeshed = Some(done);
         } else if self.contact.is_some() {
             n_crossings = self.crossings(frame).map_or(0, |crossings| crossings.n);
         }
         self.frame = frame;
         seconds.solve(&solve);
         seconds.total = clock.elapsed().as_secs_f64();
-        let (substeps, remesh) = (self.substeps, remesh.as_ref());
+        let (substeps, remeshed) = (self.substeps, remeshed.as_ref());
         let crossings = self.contact.map(|_| n_crossings);
-        Ok(FrameReport::new(self, substeps, retries, &solve, remesh, crossings, stretch, seconds))
+        Ok(FrameReport::new(self, substeps, retries, &solve, remeshed, crossings, stretch, seconds))
     }
 
     /// One step; a failing one is redone in halves.
@@ -399,6 +401,8 @@ impl World {
             }
         };
         note(self.remeshing.is_none(), "sizing, remeshing: all meshes are fixed");
+        let looks = self.remeshing.as_ref().is_some_and(Remeshing::looks);
+        note(!looks, "view: mesh sizes do not depend on a camera");
         note(self.environment.wind.is_none(), "wind: none in the scene");
         let limits = self.fabrics.iter().any(|f| f.strain_limits.is_some());
         note(!limits, "strain limits: none in the scene");
