@@ -1,5 +1,6 @@
 //! What a scene does not need is not built, and the report of every frame says so.
 
+use organza::report::Seconds;
 use organza::scene::{self, LoadOptions};
 use organza::world::World;
 
@@ -26,20 +27,21 @@ fn absent_parts_are_absent() {
     let mut bare = world("");
     assert_eq!(bare.force_names(), ["membrane", "bending", "gravity"]);
     let report = bare.advance().unwrap();
-    for stage in ["remeshing", "wind", "strain limits", "handles", "contact"] {
+    for stage in ["remeshing", "view", "wind", "strain limits", "handles", "contact"] {
         assert!(report.skipped.iter().any(|s| s.contains(stage)), "{stage}: {:?}", report.skipped);
     }
-    assert!(report.remesh.is_none());
-    assert_eq!((report.seconds.sizing, report.seconds.remesh), (0.0, 0.0));
+    assert!(report.remesh.is_none() && report.view.is_none());
+    let Seconds { view, sizing, remesh, .. } = report.seconds;
+    assert_eq!([view, sizing, remesh], [0.0; 3]);
 
     let mut full = world(
         r#"wind: { velocity: [1, 0, 0] }, handles: [{ select: { corners: ["lower-left"] } }],
-           contact: {}, obstacles: [{ mesh: { sphere: { radius_m: 0.1 } },
+           camera: { position: [0, -2, 1], target: [0, 0, 0] }, view: {}, contact: {}, obstacles: [{ mesh: { sphere: { radius_m: 0.1 } },
                                       transform: { translate: [0, 0, -1] } }],"#,
     );
     let forces = ["membrane", "bending", "strain limits", "wind", "gravity", "contact"];
     assert_eq!(full.force_names(), forces);
     let report = full.advance().unwrap();
     assert_eq!(report.skipped, ["untangling: nothing passes through anything"]);
-    assert!(report.remesh.is_some());
+    assert!(report.remesh.is_some() && report.view.is_some());
 }

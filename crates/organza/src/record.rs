@@ -40,13 +40,14 @@ pub(crate) use settings::{OBSTACLES, up};
 
 use std::path::{Path, PathBuf};
 
-use io_mcap::{Camera, Frame, Garment, Header, Obstacle, Overwrite, Recorder, RecordingFile};
+use io_mcap::{Frame, Garment, Header, Obstacle, Overwrite, Recorder, RecordingFile};
 
 use crate::build::BuildError;
 use crate::checkpoint;
 use crate::report::FrameReport;
 use crate::scene::{LoadOptions, Loaded};
 use crate::world::World;
+use sizing_view::CameraPath;
 
 /// What of a run is not in its scene file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -64,7 +65,7 @@ pub struct Run {
     world: World,
     recorder: Recorder<RecordingFile>,
     path: PathBuf,
-    camera: Option<Camera>,
+    camera: Option<CameraPath>,
     frames: u32,
     checkpoint_every: u32,
     warnings: Vec<String>,
@@ -157,7 +158,7 @@ impl Run {
         path: &Path,
     ) -> Run {
         Run {
-            camera: loaded.scene.camera.as_ref().map(|c| camera(c, loaded.scene.up())),
+            camera: loaded.scene.camera_path.clone(),
             warnings: loaded
                 .warnings
                 .iter()
@@ -234,7 +235,7 @@ impl Run {
             time_s: self.world.time(),
             garments: &borrowed,
             obstacles: &obstacles,
-            camera: self.camera,
+            camera: self.camera.as_ref().map(|path| camera(&path.at(self.world.time()))),
             transforms: &[],
             report: &report,
         };

@@ -1,12 +1,14 @@
 //! The remeshing policy of a world: a sizing field, and limits for the whole mesh.
 
 use crate::build::Garment;
+use crate::report::ViewSummary;
 use crate::scene::Scene;
 use mesh_core::{ClothState, Mesh};
 use remesh::{
     CornerMetrics, PerPanel, PhysicalSizing, RemeshError, RemeshReport, RemeshSettings,
     SizingField, adapt,
 };
+use sizing_view::{CameraPath, ViewFactors, ViewSettings, ViewSizing, window};
 use std::time::Instant;
 
 /// Principal stretches that edits may leave in cloth without strain limits (1): more strain than this
@@ -16,6 +18,7 @@ const HARDLY_STRAINED: [f64; 2] = [0.9, 1.1];
 /// What a world wants of the remesher.
 pub struct Remeshing {
     sizing: Box<dyn SizingField>,
+    view: Option<View>,
     fixed_panels: Vec<u32>,
     stretch_limits: Vec<[f64; 2]>,
     aspect_min: f64,
@@ -60,6 +63,7 @@ impl Remeshing {
         let sizing = Box::new(PerPanel { fields });
         let policy = Remeshing {
             sizing,
+            view: View::new(scene),
             fixed_panels,
             stretch_limits,
             aspect_min,
@@ -77,17 +81,22 @@ impl Remeshing {
         Remeshing { sizing: Box::new(field(self.sizing)), ..self }
     }
 
-    /// Remeshes, around the vertices `hold` by splits alone; returns what was done and the seconds
-    /// spent on sizing and on edits.
+    /// True if sizes depend on what a camera sees.
+    pub fn looks(&self) -> bool {
+        self.view.is_some()
+    }
+
+    /// Remeshes for the frame at `time` (s), around the vertices `hold` by splits alone.
     ///
     /// # Errors
     /// If a setting is out of range.
     pub fn run(
         &self,
         cloth: &mut ClothState,
+        time: f64,
         keep: &[u64],
         hold: &[u64],
-    ) -> Result<(RemeshReport, [f64; 2]), RemeshError> {
+    ) -> Result<Remeshed, RemeshError> {
         let settings = RemeshSettings {
             aspect_min: self.aspect_min,
             hysteresis: self.hysteresis,
@@ -98,11 +107,54 @@ impl Remeshing {
             hold,
             obstacle: None,
         };
-        let clock = Instant::now();
-        let mut metrics = CornerMetrics::evaluate(cloth, &*self.sizing, &settings)?;
-        let sizing = clock.elapsed().as_secs_f64();
+        let mut clock = Instant::now();
+        let mut lap = || std::mem::replace(&mut clock, Instant::now()).elapsed().as_secs_f64();
+        let factors = self.view.as_ref().map(|view| view.factors(cloth, time));
+        let view_s = if factors.is_some() { lap() } else { 0.0 };
+        let mut metrics = match &factors {
+            None => CornerMetrics::evaluate(cloth, &*self.sizing, &settings)?,
+            Some(factors) => {
+                CornerMetrics::evaluate(cloth, &ViewSizing::new(&*self.sizing, factors), &settings)?
+            }
+        };
+        let sizing_s = lap();
         let report = adapt(cloth, &mut metrics, &settings)?;
-        Ok((report, [sizing, clock.elapsed().as_secs_f64() - sizing]))
+        let view = factors.as_ref().map(ViewSummary::of);
+        Ok(Remeshed { report, view, view_s, sizing_s, edits_s: lap() })
+    }
+}
+
+/// What a remeshing did.
+pub struct Remeshed {
+    /// The edits.
+    pub report: RemeshReport,
+    /// What the camera saw, if it was asked.
+    pub view: Option<ViewSummary>,
+    /// Time spent on view factors (s).
+    pub view_s: f64,
+    /// Time spent on the sizing field (s).
+    pub sizing_s: f64,
+    /// Time spent on edits (s).
+    pub edits_s: f64,
+}
+
+/// What mesh sizes take of a camera.
+struct View {
+    path: CameraPath,
+    settings: ViewSettings,
+    frame_s: f64,
+}
+
+impl View {
+    fn new(scene: &Scene) -> Option<View> {
+        let path = scene.camera_path.clone()?;
+        Some(View { path, settings: scene.view?, frame_s: scene.frame_s() })
+    }
+
+    fn factors(&self, cloth: &ClothState, time: f64) -> ViewFactors {
+        let samples = window(&self.path, time, self.frame_s, &self.settings);
+        let factors = ViewFactors::evaluate(cloth, &samples, &self.settings);
+        factors.expect("a window has its camera, and the scene's settings have been checked")
     }
 }
 

@@ -1,10 +1,11 @@
 //! What each frame of a run reports.
 
+use crate::remeshing::Remeshed;
 use crate::world::World;
 use cloth_dynamics::{RestTriangle, SolveReport, principal_stretches};
 use mesh_core::ClothState;
-use remesh::RemeshReport;
 use serde::{Deserialize, Serialize};
+use sizing_view::ViewFactors;
 
 /// Seconds of wall time by stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -22,6 +23,8 @@ pub struct Seconds {
     pub energy: f64,
     /// Finding contacts and keeping ways free (s).
     pub contact: f64,
+    /// View factors (s).
+    pub view: f64,
     /// Sizing field (s).
     pub sizing: f64,
     /// Mesh edits (s).
@@ -75,6 +78,25 @@ pub struct RemeshSummary {
     pub limit_reached: bool,
 }
 
+/// What the camera saw of the cloth when the frame was remeshed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ViewSummary {
+    /// Triangles to be meshed as finely as visible ones: in the picture now, or at a cut.
+    pub visible: usize,
+    /// Mean view factor of all triangles (1).
+    pub mean_factor: f64,
+}
+
+impl ViewSummary {
+    pub(crate) fn of(factors: &ViewFactors) -> ViewSummary {
+        let values = factors.values();
+        ViewSummary {
+            visible: values.iter().filter(|&&v| v == 1.0).count(),
+            mean_factor: values.iter().sum::<f64>() / values.len() as f64,
+        }
+    }
+}
+
 /// Report of one frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameReport {
@@ -122,6 +144,9 @@ pub struct FrameReport {
     pub stretch: Option<StretchRange>,
     /// Remeshing, if the scene has any.
     pub remesh: Option<RemeshSummary>,
+    /// What the camera saw, if mesh sizes depend on it.
+    #[serde(default)]
+    pub view: Option<ViewSummary>,
     /// Kinetic energy (J).
     pub kinetic_energy_j: f64,
     /// Stages that the scene does not need, and why.
@@ -144,7 +169,7 @@ impl FrameReport {
         substeps: u32,
         retries: u32,
         solve: &SolveReport,
-        remesh: Option<&RemeshReport>,
+        remeshed: Option<&Remeshed>,
         crossings: Option<usize>,
         stretch: StretchRange,
         seconds: Seconds,
@@ -170,13 +195,14 @@ impl FrameReport {
             warnings: Vec::new(),
             residual_m_per_s: solve.residual,
             stretch: Some(stretch),
-            remesh: remesh.map(|r| RemeshSummary {
+            remesh: remeshed.map(|r| &r.report).map(|r| RemeshSummary {
                 splits: r.n_splits,
                 flips: r.n_flips,
                 collapses: r.n_collapses,
                 min_aspect: r.quality.aspect_min,
                 limit_reached: r.limit_reached(),
             }),
+            view: remeshed.and_then(|r| r.view),
             kinetic_energy_j: world.cloth.kinetic_energy(),
             skipped: world.skipped(),
             seconds,

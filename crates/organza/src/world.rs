@@ -239,7 +239,7 @@ impl World {
             self.step(Step { time, h }, frame, 0, &mut solve, &mut retries, &mut seconds)?;
         }
         let stretch = StretchRange::of(&self.cloth);
-        let mut remesh = None;
+        let mut remeshed = None;
         let mut crossings = None;
         if let Some(remeshing) = &self.remeshing {
             let (before, next) = (self.cloth.mesh.uids().to_vec(), self.cloth.mesh.next_uid());
@@ -247,9 +247,9 @@ impl World {
             let error = |source| StepError::Remesh { frame, source };
             let saved = self.contact.is_some().then(|| self.cloth.clone());
             let run = |cloth: &mut ClothState, hold: &[u64]| {
-                remeshing.run(cloth, &keep, hold).map_err(error)
+                remeshing.run(cloth, frame as f64 * self.frame_s, &keep, hold).map_err(error)
             };
-            let (mut report, mut times) = run(&mut self.cloth, &[])?;
+            let mut done = run(&mut self.cloth, &[])?;
             if let Some(saved) = saved {
                 // Where flips and collapses took cloth through something, only splits are made next
                 // time; in the end, everywhere.
@@ -261,7 +261,8 @@ impl World {
                 let saved = std::mem::replace(&mut self.cloth, edited);
                 for round in 0..=HOLD_ROUNDS {
                     crossings = self.crossings(frame);
-                    let Some(found) = crossings.as_ref().filter(|_| report.n_edits() > 0) else {
+                    let Some(found) = crossings.as_ref().filter(|_| done.report.n_edits() > 0)
+                    else {
                         break;
                     };
                     if before > 0.0 && length(self) <= before {
@@ -272,16 +273,16 @@ impl World {
                     if round == HOLD_ROUNDS {
                         hold = self.cloth.mesh.uids().to_vec();
                     }
-                    (report, times) = run(&mut self.cloth, &hold)?;
+                    done = run(&mut self.cloth, &hold)?;
                 }
             }
-            if report.n_edits() > 0 {
+            if done.report.n_edits() > 0 {
                 self.prepared = None;
-                self.handles.follow(&before, next, &report.journal);
+                self.handles.follow(&before, next, &done.report.journal);
             }
-            seconds.sizing = times[0];
-            seconds.remesh = times[1];
-            remesh = Some(report);
+            (seconds.view, seconds.sizing) = (done.view_s, done.sizing_s);
+            seconds.remesh = done.edits_s;
+            remeshed = Some(done);
         } else if self.contact.is_some() {
             crossings = self.crossings(frame);
         }
@@ -291,10 +292,11 @@ impl World {
         self.note_crossings(crossings.as_ref());
         seconds.solve(&solve);
         seconds.total = clock.elapsed().as_secs_f64();
-        let (substeps, remesh) = (self.substeps, remesh.as_ref());
+        let (substeps, remeshed) = (self.substeps, remeshed.as_ref());
         let crossings = self.contact.map(|_| crossings.map_or(0, |crossings| crossings.n));
-        let mut report =
-            FrameReport::new(self, substeps, retries, &solve, remesh, crossings, stretch, seconds);
+        let mut report = FrameReport::new(
+            self, substeps, retries, &solve, remeshed, crossings, stretch, seconds,
+        );
         report.yielded = yielded;
         report.warnings = std::mem::take(&mut self.tangled.warnings);
         Ok(report)
@@ -424,6 +426,8 @@ impl World {
             }
         };
         note(self.remeshing.is_none(), "sizing, remeshing: all meshes are fixed");
+        let looks = self.remeshing.as_ref().is_some_and(Remeshing::looks);
+        note(!looks, "view: mesh sizes do not depend on a camera");
         note(self.environment.wind.is_none(), "wind: none in the scene");
         let limits = self.fabrics.iter().any(|f| f.strain_limits.is_some());
         note(!limits, "strain limits: none in the scene");

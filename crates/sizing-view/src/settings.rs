@@ -15,7 +15,7 @@ pub struct ViewSettings {
     pub v_hidden: f64,
     /// Distance m from the frustum over which the view factor falls to `v_out` (m).
     pub margin: f64,
-    /// Length T of the temporal window, up to 10 000 (frames).
+    /// Length T of the temporal window in frames, up to 10 000 (1).
     pub window: f64,
     /// ℓ_min: edges are not made shorter than this in the picture; 0 switches the bound off (px).
     pub size_min_px: f64,

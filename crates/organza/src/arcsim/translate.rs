@@ -144,6 +144,8 @@ fn translate(
         obstacles,
         contact,
         camera: extras.camera,
+        shots: Vec::new(),
+        view: None,
         recording: extras.recording.unwrap_or_default(),
     })
 }

@@ -1,44 +1,30 @@
 //! The camera of a scene as recordings hold it.
 
-use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
-
-use crate::scene::format;
-
-/// The pinhole camera of a scene whose direction against gravity is `up`.
-pub fn camera(camera: &format::Camera, up: [f64; 3]) -> io_mcap::Camera {
-    let vector = Vector3::from;
-    let forward = (vector(camera.target) - vector(camera.position)).normalize();
-    let right = forward.cross(&vector(camera.up.unwrap_or(up))).normalize();
-    let down = forward.cross(&right);
-    let axes = Matrix3::from_columns(&[right, down, forward]);
-    let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes));
-    let [width, height] = camera.resolution.map(f64::from);
-    let focal = 0.5 * height / (0.5 * camera.vertical_fov_deg.to_radians()).tan();
+/// The pinhole camera with its numbers by name.
+pub fn camera(camera: &sizing_view::Camera) -> io_mcap::Camera {
+    let [width_px, height_px] = camera.resolution();
     io_mcap::Camera {
-        width_px: camera.resolution[0],
-        height_px: camera.resolution[1],
-        focal_px: [focal; 2],
-        center_px: [0.5 * width, 0.5 * height],
-        position: camera.position,
-        rotation: rotation.coords.into(),
+        width_px,
+        height_px,
+        focal_px: [camera.focal_px(); 2],
+        center_px: [width_px, height_px].map(|side| 0.5 * f64::from(side)),
+        position: camera.position().into(),
+        rotation: camera.world_from_camera().coords.into(),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Quaternion;
+    use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
     #[test]
     fn axes_are_right_down_forward() {
-        let scene = format::Camera {
-            position: [1.0, -5.0, 2.0],
-            target: [1.0, 0.0, 2.0],
-            up: None,
-            vertical_fov_deg: 90.0,
-            resolution: [640, 480],
-        };
-        let recorded = camera(&scene, [0.0, 0.0, 1.0]);
+        let (position, target) = (Vector3::new(1.0, -5.0, 2.0), Vector3::new(1.0, 0.0, 2.0));
+        let fov = std::f64::consts::FRAC_PI_2;
+        let seen = sizing_view::Camera::looking_at(position, target, Vector3::z(), fov, [640, 480])
+            .unwrap();
+        let recorded = camera(&seen);
         let q = UnitQuaternion::new_normalize(Quaternion::from(recorded.rotation));
         for (axis, expected) in [
             (Vector3::x(), Vector3::x()),

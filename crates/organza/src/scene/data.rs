@@ -8,6 +8,7 @@ use super::format::{
 use super::motion::{Motion, Transform};
 use crate::contact::ContactSettings;
 use crate::fabric::Fabric;
+use sizing_view::{CameraPath, ViewSettings};
 
 /// Everything a run needs to know, except the bytes of mesh files.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,6 +43,10 @@ pub struct Scene {
     pub contact: Option<ContactSettings>,
     /// The view of pictures.
     pub camera: Option<Camera>,
+    /// The camera over time; there if `camera` is.
+    pub camera_path: Option<CameraPath>,
+    /// Mesh sizes by what the camera sees; only where there is a camera.
+    pub view: Option<ViewSettings>,
     /// What is recorded.
     pub recording: Recording,
 }
@@ -62,9 +67,14 @@ impl Scene {
     /// Unit vector against gravity; z where there is none.
     #[must_use]
     pub fn up(&self) -> [f64; 3] {
-        let up = -nalgebra::Vector3::from(self.gravity);
-        up.try_normalize(0.0).map_or([0.0, 0.0, 1.0], Into::into)
+        up(self.gravity)
     }
+}
+
+/// Unit vector against gravity; z where there is none.
+pub(super) fn up(gravity: [f64; 3]) -> [f64; 3] {
+    let up = -nalgebra::Vector3::from(gravity);
+    up.try_normalize(0.0).map_or([0.0, 0.0, 1.0], Into::into)
 }
 
 /// A piece of cloth.

@@ -59,3 +59,5 @@ pub const MAX_TIME_S: f64 = 1e9;
 pub const MAX_DAMPING: f64 = 1e6;
 /// Width and height of pictures (pixels).
 pub const MAX_PICTURE_PX: u32 = 16_384;
+/// Shots of a camera.
+pub const MAX_SHOTS: usize = 10_000;

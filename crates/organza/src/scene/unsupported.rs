@@ -8,12 +8,10 @@ use super::path::ValuePath;
 use super::typed::Complaint;
 
 /// Keys of the scene, and what they stand for.
-const SCENE: [(&str, &str); 7] = [
+const SCENE: [(&str, &str); 5] = [
     ("fluid", "fluids"),
     ("fluids", "fluids"),
     ("cameras", "several cameras"),
-    ("shots", "camera shots"),
-    ("view_sizing", "view-dependent remeshing"),
     ("restraint", "adaptively restrained dynamics"),
     ("morphs", "morphs"),
 ];

@@ -6,12 +6,14 @@ mod handle;
 mod mesh;
 mod obstacle;
 mod solver;
+mod view;
 
 pub use cloth::*;
 pub use handle::*;
 pub use mesh::*;
 pub use obstacle::*;
 pub use solver::*;
+pub use view::*;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -72,6 +74,12 @@ pub struct SceneFile {
     /// The view of pictures; absent means one that shows everything.
     #[serde(default)]
     pub camera: Option<Camera>,
+    /// How the camera moves, shot after shot; absent means that it stands where `camera` says.
+    #[serde(default)]
+    pub shots: Vec<ShotFile>,
+    /// Mesh sizes by what the camera sees; absent means that it does not matter what it sees.
+    #[serde(default)]
+    pub view: Option<ViewFile>,
     /// What is recorded besides the frames.
     #[serde(default)]
     pub recording: Recording,
@@ -92,7 +100,7 @@ pub struct Wind {
     pub drag: f64,
 }
 
-/// The view of pictures. It does not influence the simulation.
+/// The view of pictures. It does not influence the simulation unless the scene has a `view`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Camera {
@@ -154,6 +162,19 @@ mod default {
     }
     pub(super) fn vertical_fov_deg() -> f64 {
         40.0
+    }
+    pub(super) fn view() -> super::ViewFile {
+        let sizing_view::ViewSettings {
+            v_back, v_out, margin, window, size_min_px, size_max, ..
+        } = sizing_view::ViewSettings::default();
+        super::ViewFile {
+            v_back,
+            v_out,
+            margin_m: margin,
+            window_frames: window,
+            size_min_px,
+            size_max_m: size_max,
+        }
     }
     pub(super) fn resolution() -> [u32; 2] {
         [1280, 720]

@@ -5,11 +5,12 @@ mod cloth;
 mod handle;
 mod mesh;
 mod obstacle;
+mod view;
 
 use super::check::{At, Complaints, beyond};
 use super::data::Scene;
 use super::files::Files;
-use super::format::{Camera, ClothFile, SceneFile, Wind};
+use super::format::{ClothFile, SceneFile, Wind};
 use super::issue::{Issue, IssueKind};
 use super::limits;
 
@@ -76,7 +77,10 @@ pub(super) fn resolve(
     };
     let contact = obstacle::contact(file.contact, !file.obstacles.is_empty(), &top.key("contact"));
     let obstacles = obstacle::resolve(file.obstacles, &top.key("obstacles"), context);
-    let scene = Scene {
+    let up = super::data::up(file.gravity);
+    let camera_path = view::path(file.camera.as_ref(), &file.shots, up, &top);
+    let view = file.view.and_then(|view| view::settings(view, file.camera.is_some(), &top));
+    Some(Scene {
         name: file.name.unwrap_or_else(|| default_name.to_owned()),
         frames: file.frames,
         frames_per_second: file.frames_per_second,
@@ -92,12 +96,10 @@ pub(super) fn resolve(
         obstacles: obstacles?,
         contact,
         camera: file.camera,
+        camera_path,
+        view,
         recording: file.recording,
-    };
-    if let Some(camera) = &scene.camera {
-        check_camera(camera, scene.up(), &top.key("camera"));
-    }
-    Some(scene)
+    })
 }
 
 /// The names of all `things`, given or made up; names used twice are complained of.
@@ -158,30 +160,4 @@ fn check_wind(wind: &Wind, at: &At<'_>) {
     at.key("velocity").vector(&wind.velocity, limits::MAX_SPEED_M_PER_S, "m/s");
     at.key("density").not_negative(wind.density, limits::MAX_AIR_DENSITY_KG_PER_M3, "kg/m³");
     at.key("drag").not_negative(wind.drag, limits::MAX_FACTOR, "N·s/m³");
-}
-
-fn check_camera(camera: &Camera, scene_up: [f64; 3], at: &At<'_>) {
-    at.key("position").coordinates(&camera.position);
-    at.key("target").coordinates(&camera.target);
-    let fov = camera.vertical_fov_deg;
-    if !(1.0..=170.0).contains(&fov) {
-        at.key("vertical_fov_deg").complain(format!("must lie between 1 and 170, got {fov}"));
-    }
-    for (i, pixels) in camera.resolution.into_iter().enumerate() {
-        let at = at.key("resolution").index(i);
-        at.at_least(pixels, 1);
-        if pixels > limits::MAX_PICTURE_PX {
-            let limit = f64::from(limits::MAX_PICTURE_PX);
-            at.complain(beyond(f64::from(pixels), limit, "pixels"));
-        }
-    }
-    let vector = nalgebra::Vector3::from;
-    let view = vector(camera.target) - vector(camera.position);
-    let up = vector(camera.up.unwrap_or(scene_up));
-    if view.norm() < 1e-9 {
-        at.key("target").complain("is where the camera stands");
-    } else if view.normalize().cross(&up).norm() < 1e-6 * up.norm().max(1e-9) {
-        at.key("up")
-            .complain("is parallel to the direction of view or zero; give an `up` across the view");
-    }
 }

@@ -1,0 +1,115 @@
+//! Checks and resolves the camera, its shots, and the sizing by what it sees.
+
+use super::super::check::{At, beyond};
+use super::super::format::{Camera, CameraKeyframe, ShotFile, ViewFile};
+use super::super::limits;
+use nalgebra::Vector3;
+use sizing_view::{CameraPath, Key, Shot, ViewSettings};
+
+/// The camera over time; none if the scene has none or something was complained of.
+pub(super) fn path(
+    camera: Option<&Camera>,
+    shots: &[ShotFile],
+    scene_up: [f64; 3],
+    top: &At<'_>,
+) -> Option<CameraPath> {
+    let Some(camera) = camera else {
+        if !shots.is_empty() {
+            top.key("shots").complain("the scene has no `camera`, which sets the resolution");
+        }
+        return None;
+    };
+    let own = check_camera(camera, scene_up, &top.key("camera"));
+    if shots.is_empty() {
+        return own.map(CameraPath::still);
+    }
+    if shots.len() > limits::MAX_SHOTS {
+        let n = shots.len();
+        let limit = limits::MAX_SHOTS;
+        top.key("shots").complain(format!("has {n} elements, beyond the limit of {limit}"));
+        return None;
+    }
+    let at = top.key("shots");
+    let resolved: Vec<Option<Shot>> = shots
+        .iter()
+        .enumerate()
+        .map(|(i, shot)| {
+            let at = at.index(i);
+            at.key("start_s").bounded(shot.start_s, limits::MAX_TIME_S, "s");
+            let keys = shot.keyframes.iter().enumerate();
+            let keys: Vec<Option<Key>> = keys
+                .map(|(k, key)| keyframe(key, camera, scene_up, &at.key("keyframes").index(k)))
+                .collect();
+            let keys = keys.into_iter().collect::<Option<_>>()?;
+            Some(Shot { start: shot.start_s, keys })
+        })
+        .collect();
+    let path = CameraPath::new(resolved.into_iter().collect::<Option<_>>()?);
+    path.map_err(|error| at.complain(error.to_string())).ok()
+}
+
+fn keyframe(key: &CameraKeyframe, like: &Camera, scene_up: [f64; 3], at: &At<'_>) -> Option<Key> {
+    at.key("time_s").bounded(key.time_s, limits::MAX_TIME_S, "s");
+    let camera = Camera {
+        position: key.position,
+        target: key.target,
+        up: key.up.or(like.up),
+        vertical_fov_deg: key.vertical_fov_deg.unwrap_or(like.vertical_fov_deg),
+        resolution: like.resolution,
+    };
+    Some(Key { time: key.time_s, camera: check_camera(&camera, scene_up, at)? })
+}
+
+/// Checks a camera; none if something was complained of.
+fn check_camera(camera: &Camera, scene_up: [f64; 3], at: &At<'_>) -> Option<sizing_view::Camera> {
+    at.key("position").coordinates(&camera.position);
+    at.key("target").coordinates(&camera.target);
+    let fov = camera.vertical_fov_deg;
+    if !(1.0..=170.0).contains(&fov) {
+        at.key("vertical_fov_deg").complain(format!("must lie between 1 and 170, got {fov}"));
+    }
+    for (i, pixels) in camera.resolution.into_iter().enumerate() {
+        let at = at.key("resolution").index(i);
+        at.at_least(pixels, 1);
+        if pixels > limits::MAX_PICTURE_PX {
+            let limit = f64::from(limits::MAX_PICTURE_PX);
+            at.complain(beyond(f64::from(pixels), limit, "pixels"));
+        }
+    }
+    let vector = Vector3::from;
+    let view = vector(camera.target) - vector(camera.position);
+    let up = vector(camera.up.unwrap_or(scene_up));
+    if view.norm() < 1e-9 {
+        at.key("target").complain("is where the camera stands");
+        return None;
+    } else if view.normalize().cross(&up).norm() < 1e-6 * up.norm().max(1e-9) {
+        at.key("up")
+            .complain("is parallel to the direction of view or zero; give an `up` across the view");
+        return None;
+    }
+    let (position, target) = (camera.position.into(), camera.target.into());
+    let made =
+        sizing_view::Camera::looking_at(position, target, up, fov.to_radians(), camera.resolution);
+    // What it refuses has been complained of above.
+    made.ok()
+}
+
+/// The constants of sizing by view.
+pub(super) fn settings(view: ViewFile, has_camera: bool, top: &At<'_>) -> Option<ViewSettings> {
+    let at = top.key("view");
+    if !has_camera {
+        at.complain("the scene has no `camera` to look through");
+    }
+    let settings = ViewSettings {
+        v_back: view.v_back,
+        v_hidden: view.v_back,
+        v_out: view.v_out,
+        margin: view.margin_m,
+        window: view.window_frames,
+        size_min_px: view.size_min_px,
+        size_max: view.size_max_m,
+        ..ViewSettings::default()
+    };
+    settings.check().map_err(|error| at.complain(error.to_string())).ok()?;
+    has_camera.then_some(settings)
+}
