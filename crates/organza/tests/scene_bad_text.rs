@@ -158,7 +158,8 @@ fn unknown_and_missing_keys() {
         "'a`, expected `b': 1,",
         "s.json5:1:13: a`, expected `b: unknown key `a`, expected `b`, \
         expected one of $schema, name, frames, frames_per_second, substeps, gravity, wind, integrator, \
-        newton, linear_solver, linear_tolerance, cloths, handles, obstacles, contact, camera, recording",
+        newton, linear_solver, linear_tolerance, cloths, handles, obstacles, contact, camera, \
+        shots, view, recording",
     );
 }
 
@@ -236,7 +237,7 @@ fn what_is_not_supported_is_an_error_or_a_warning() {
     assert_eq!(
         errors.to_string(),
         "s.json5:1:13: cameras: not supported yet: several cameras\n\
-         s.json5:1:26: restraint: not supported yet: adaptively restrained dynamics\n\
+         s.json5:1:28: restraint: not supported yet: adaptively restrained dynamics\n\
          s.json5:2:40: cloths[0].plasticity: not supported yet: plastic deformation\n\
          use --allow-unsupported to run without what is not supported yet"
     );
