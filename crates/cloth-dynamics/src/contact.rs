@@ -66,7 +66,7 @@ pub const ONSET: f64 = 0.2;
 /// a stiffness (N/m). Its curvature rises from 0 to 1 over the first w = [`ONSET`] d̂ and stays there:
 /// u³/(6w) for a depth u = d̂ − d up to w, and a parabola from there on. So it is convex and finite, and
 /// next to quadratic where it matters: Newton's method needs as few iterations with it as without.
-pub fn barrier(d: f64, d_hat: f64) -> [f64; 3] {
+pub fn penalty(d: f64, d_hat: f64) -> [f64; 3] {
     let (u, w) = (d_hat - d, ONSET * d_hat);
     if u <= 0.0 {
         [0.0; 3]
@@ -106,17 +106,17 @@ mod tests {
     fn slopes_are_those_of_finite_differences() {
         for share in [0.01, 0.3, 0.7, 0.95, 1.2] {
             let d = 0.005 * share;
-            let [_, slope, stiffness] = barrier(d, 0.005);
-            check(|d| barrier(d, 0.005), d, 1e-5 * d, [slope.abs() + 1e-9, stiffness.abs() + 1e-3]);
+            let [_, slope, stiffness] = penalty(d, 0.005);
+            check(|d| penalty(d, 0.005), d, 1e-5 * d, [slope.abs() + 1e-9, stiffness.abs() + 1e-3]);
             check(|y| friction(y, 0.005), d, 1e-5 * d, [1.0, 1.0 / 0.005]);
         }
     }
 
     #[test]
-    fn barriers_repel_and_friction_is_smooth() {
-        assert_eq!(barrier(1.0, 1.0), [0.0; 3]);
-        assert!(barrier(0.5, 1.0)[1] < 0.0 && barrier(-2.0, 1.0)[0] > barrier(-1.0, 1.0)[0]);
-        let [a, b] = [0.800_001, 0.799_999].map(|d| barrier(d, 1.0));
+    fn penalties_repel_and_friction_is_smooth() {
+        assert_eq!(penalty(1.0, 1.0), [0.0; 3]);
+        assert!(penalty(0.5, 1.0)[1] < 0.0 && penalty(-2.0, 1.0)[0] > penalty(-1.0, 1.0)[0]);
+        let [a, b] = [0.800_001, 0.799_999].map(|d| penalty(d, 1.0));
         assert!((0..3).all(|k| (a[k] - b[k]).abs() < 1e-4), "{a:?} {b:?}");
         let [inside, outside] = [0.999_999, 1.000_001].map(|y| friction(y, 1.0));
         assert!((inside[0] - outside[0]).abs() < 1e-5 && (inside[1] - 1.0).abs() < 1e-5);

@@ -1,6 +1,6 @@
 //! Contact with a fixed plane, without friction: the simplest of obstacles.
 
-use crate::contact::{Blocked, Contact, STIFFNESS, barrier};
+use crate::contact::{Blocked, Contact, STIFFNESS, penalty};
 use crate::force::Stage;
 use crate::solver::BlockMatrix;
 use mesh_core::{World3, par};
@@ -58,14 +58,14 @@ impl Contact for PlaneContact {
 
     fn energy(&self, x: &[World3]) -> f64 {
         par::sum(x.len(), |i| {
-            let [energy, ..] = barrier(self.gap(&x[i]), self.thickness);
+            let [energy, ..] = penalty(self.gap(&x[i]), self.thickness);
             if energy == 0.0 { 0.0 } else { energy * STIFFNESS * self.inertia[i] }
         })
     }
 
     fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {
         for (i, x) in x.iter().enumerate() {
-            let [_, slope, curvature] = barrier(self.gap(x), self.thickness);
+            let [_, slope, curvature] = penalty(self.gap(x), self.thickness);
             if slope < 0.0 {
                 let k = STIFFNESS * self.inertia[i];
                 gradient[i] += self.normal * (slope * k);

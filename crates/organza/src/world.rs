@@ -246,6 +246,8 @@ impl World {
             let keep = self.handles.names();
             let error = |source| StepError::Remesh { frame, source };
             let saved = self.contact.is_some().then(|| self.cloth.clone());
+            let is_tangled = self.tangled.matters();
+            let tangled_before = if is_tangled { self.contour_length(frame) } else { 0.0 };
             let run = |cloth: &mut ClothState, hold: &[u64]| {
                 remeshing.run(cloth, frame as f64 * self.frame_s, &keep, hold).map_err(error)
             };
@@ -253,19 +255,14 @@ impl World {
             if let Some(saved) = saved {
                 // Where flips and collapses took cloth through something, only splits are made next
                 // time; in the end, everywhere.
-                let tangled = self.tangled.matters();
-                let length =
-                    |world: &World| if tangled { world.contour_length(frame) } else { 0.0 };
-                let (edited, mut hold) = (std::mem::replace(&mut self.cloth, saved), Vec::new());
-                let before = length(self);
-                let saved = std::mem::replace(&mut self.cloth, edited);
+                let mut hold = Vec::new();
                 for round in 0..=HOLD_ROUNDS {
                     crossings = self.crossings(frame);
                     let Some(found) = crossings.as_ref().filter(|_| done.report.n_edits() > 0)
                     else {
                         break;
                     };
-                    if before > 0.0 && length(self) <= before {
+                    if tangled_before > 0.0 && self.contour_length(frame) <= tangled_before {
                         break;
                     }
                     self.cloth = saved.clone();

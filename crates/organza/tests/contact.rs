@@ -279,7 +279,6 @@ fn weights_hold_each_other_over_a_cylinder_up_to_the_capstan_ratio() {
             run.steps(n, 0.005, &free);
             let way = (middle(&run) / run.cloth.x.len() as f64 - start).abs();
             let speed = way / (n as f64 * 0.005);
-            println!("μ {mu}, {share} of the ratio: {speed} m/s");
             assert_eq!(speed > 5e-3, slides, "μ {mu}, {share} of the ratio: {speed} m/s");
         }
     }

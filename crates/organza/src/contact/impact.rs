@@ -3,9 +3,9 @@
 //! First each hit takes the approach out of its own motion, by the least change that does (an
 //! inelastic impact, which conserves momentum). Where hits depend on each other that may go on for
 //! long, so next they take out the relative motion, and in the end all that hit each other go as
-//! one (the impact zones of Provot1997 and Harmon2008, without their rotation). What does not touch at the start of the stage
-//! does not touch then either, so that only obstacles that go different ways can be in each other's
-//! way.
+//! one (the impact zones of Provot1997 and Harmon2008, without their rotation). What does not touch at
+//! the start of the stage does not touch then either, so that only obstacles that go different ways can
+//! be in each other's way.
 
 use super::SurfaceContact;
 use super::pair::Sides;
@@ -55,10 +55,9 @@ impl SurfaceContact {
         // Those whose pairs have to be looked at: all, then those that the last round moved.
         let mut dirty: Option<Vec<bool>> = None;
         let mut zones = Zones::default();
-        for round in 0..=MAX_ROUNDS {
-            let n_searches = self.n_searches;
-            self.cover(x_t0, x);
-            if self.n_searches > n_searches {
+        let mut round = 0;
+        loop {
+            if self.cover(x_t0, x) {
                 dirty = None;
             }
             let mut hits = self.hits(x_t0, x, dirty.as_deref());
@@ -85,8 +84,8 @@ impl SurfaceContact {
             }
             changed.iter_mut().zip(&moved).for_each(|(changed, moved)| *changed |= moved);
             dirty = Some(moved);
+            round += 1;
         }
-        unreachable!("the last round returns")
     }
 
     /// Pairs with one of the vertices `of` that come too near on the way to `x`.
@@ -105,11 +104,7 @@ impl SurfaceContact {
             }
             let (from, to) = (self.corners_now(sides, x_t0), self.corners_then(sides, x));
             let motion = sides.relative_motion(&from, &to);
-            // What is known of the distance without working it out again.
-            let distance = match self.distances.get(k) {
-                Some(&distance) => distance,
-                None => sides.closest(&from).distance,
-            };
+            let distance = self.distances[k];
             let gap = sides.thickness.min(distance);
             if distance - motion > CLEAR * gap {
                 return;
@@ -178,7 +173,8 @@ impl SurfaceContact {
         }
     }
 
-    /// Gives all vertices of a zone the same motion: that of obstacles or held vertices in it, if there are any.
+    /// Gives all vertices of a zone the same motion: that of obstacles or held vertices in it, if there
+    /// are any.
     fn move_as_one(&self, zones: &Zones, x_t0: &[World3], x: &mut [World3], fixed: &[bool]) {
         for zone in &zones.zones {
             let (mut held, mut n_held) = (World3::zeros(), 0);

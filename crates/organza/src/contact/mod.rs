@@ -14,7 +14,7 @@ mod touch;
 
 use candidates::Candidates;
 use cloth_dynamics::Stage;
-use cloth_dynamics::contact::{Blocked, Contact, STIFFNESS, barrier};
+use cloth_dynamics::contact::{Blocked, Contact, STIFFNESS, penalty};
 use cloth_dynamics::solver::BlockMatrix;
 use collision::{Aabb, Bvh, Surface, SurfaceError};
 use mesh_core::{ClothState, World3, par};
@@ -62,8 +62,7 @@ pub struct SurfaceContact {
     obstacles: Option<Moving>,
     /// All that may matter for a while.
     candidates: Candidates,
-    n_searches: usize,
-    /// Distance of each candidate at the start of the stage (m); empty if it is not known.
+    /// Distance of each candidate at the start of the stage (m).
     distances: Vec<f64>,
     touches: Vec<Touch>,
     slips: Vec<Slip>,
@@ -97,7 +96,6 @@ impl SurfaceContact {
             cloth_tree: Bvh::build(0, |_| Aabb::EMPTY),
             obstacles: obstacles.map(Moving::new),
             candidates: Candidates::default(),
-            n_searches: 0,
             distances: Vec::new(),
             touches: Vec::new(),
             slips: Vec::new(),
@@ -142,8 +140,7 @@ impl SurfaceContact {
     /// Finds out what is tangled at the start of a stage.
     fn begin_tangle(&mut self, x_t0: &[World3], duration: f64) {
         let Some(mut tangle) = self.tangle.take() else { return };
-        let (now, then): (&[World3], &[World3]) =
-            self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then));
+        let (now, then) = self.obstacle_way();
         let start = Start {
             x: x_t0,
             obstacles: [now, then],
@@ -226,7 +223,7 @@ impl SurfaceContact {
         let before = moving.map(|moving| (moving.fixed.motion)(times[1] - stage.h));
         for (sides, closest) in near {
             let reach = self.reach(sides, closest.distance);
-            let [_, slope, _] = barrier(closest.distance, reach);
+            let [_, slope, _] = penalty(closest.distance, reach);
             let (mut mu, mut way) = (self.settings.friction, World3::zeros());
             if let (Some(moving), Some(before), true) = (moving, &before, !sides.is_within_cloth())
             {
@@ -322,15 +319,11 @@ impl Contact for SurfaceContact {
             let sides = &pairs[k];
             let (from, to) = (self.corners_now(sides, &self.x_t0), self.corners_then(sides, x));
             let thickness = OVERLOOKED * sides.thickness;
-            let motion = sides.relative_motion(&from, &to);
-            if self.distances.get(k).is_some_and(|distance| distance - motion > thickness) {
+            let is_far = self.distances[k] - sides.relative_motion(&from, &to) > thickness;
+            if is_far || known.contains(&sides.key()) || self.is_exempt(sides) {
                 return;
             }
             let start = sides.closest(&from);
-            let is_known = known.contains(&sides.key()) || self.is_exempt(sides);
-            if start.distance - motion > thickness || is_known {
-                return;
-            }
             more.extend(self.touch(sides, start, x).filter(|touch| touch.gap(x) < thickness));
         });
         let is_new = !more.is_empty();

@@ -10,15 +10,15 @@ use mesh_core::{World3, par};
 const ROOM: f64 = 0.1;
 
 impl SurfaceContact {
-    /// Makes the candidates complete for the way of the cloth from `x` to `x_t1` (m), while obstacles go
-    /// theirs.
-    pub(super) fn cover(&mut self, x: &[World3], x_t1: &[World3]) {
+    /// Makes the candidates complete for the way of the cloth from the start `x` of the stage to `x_t1`
+    /// (m), while obstacles go theirs; true if they had to be sought anew.
+    pub(super) fn cover(&mut self, x: &[World3], x_t1: &[World3]) -> bool {
         let (now, then) = self.obstacle_way();
-        if !self.candidates.are_complete([x, x_t1], [now, then]) {
+        let is_new = !self.candidates.are_complete([x, x_t1], [now, then]);
+        if is_new {
             self.search(x, x_t1);
-            self.n_searches += 1;
-            self.distances.clear();
         }
+        is_new
     }
 
     pub(super) fn obstacle_way(&self) -> (&[World3], &[World3]) {
@@ -75,12 +75,12 @@ impl SurfaceContact {
             let sides = self.sides(set, pair);
             let (from, to) = (self.corners_now(&sides, x), self.corners_then(&sides, x_t1));
             let left = distance - sides.relative_motion(&from, &to);
-            (left <= sides.thickness + 2.0 * off).then_some(sides)
+            (left <= sides.thickness + 2.0 * off).then_some((sides, distance))
         });
-        let pairs = pairs.into_iter().flatten().collect();
-        let (now, then): (&[World3], &[World3]) =
-            self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then));
+        let (pairs, distances) = pairs.into_iter().flatten().unzip();
+        let (now, then) = self.obstacle_way();
         self.candidates = Candidates::new(pairs, off, [x, x_t1], [now, then]);
+        self.distances = distances;
     }
 
     /// Where things of a pair are: `set` is 0 within the cloth and 1 with obstacles.

@@ -1,8 +1,8 @@
-//! A contact with its energy: a gap that is linear in the positions, and the barrier that keeps it
+//! A contact with its energy: a gap that is linear in the positions, and the penalty that keeps it
 //! open.
 
 use super::pair::{ClosestPoints, Sides};
-use cloth_dynamics::contact::barrier;
+use cloth_dynamics::contact::penalty;
 use cloth_dynamics::solver::BlockMatrix;
 use mesh_core::World3;
 
@@ -16,7 +16,7 @@ pub(super) struct Touch {
     offset: f64,
     /// Gap below which there is a force (m).
     thickness: f64,
-    /// Of the barrier (N/m).
+    /// Of the penalty (N/m).
     stiffness: f64,
 }
 
@@ -49,11 +49,11 @@ impl Touch {
     }
 
     pub(super) fn energy(&self, x: &[World3]) -> f64 {
-        self.stiffness * barrier(self.gap(x), self.thickness)[0]
+        self.stiffness * penalty(self.gap(x), self.thickness)[0]
     }
 
     pub(super) fn add_system(&self, x: &[World3], gradient: &mut [World3], to: &mut BlockMatrix) {
-        let [_, slope, curvature] = barrier(self.gap(x), self.thickness);
+        let [_, slope, curvature] = penalty(self.gap(x), self.thickness);
         if slope < 0.0 {
             let force = self.normal * (slope * self.stiffness);
             self.sides.add_gradient(&self.weights, &force, gradient);
