@@ -46,6 +46,11 @@ impl Candidates {
         same(0, x) && same(1, obstacles) && near(0) && near(1)
     }
 
+    /// Whether nothing is far from the way, so that most of what is near each other is known.
+    pub(super) fn are_around(&self, x: &[World3], obstacles: &[World3]) -> bool {
+        self.are_complete([x, x], [obstacles, obstacles])
+    }
+
     /// Share of the way that is nearest to positions of the cloth (1).
     fn share(&self, x: &[World3]) -> f64 {
         let (start, way) = (&self.start[0], &self.way[0]);

@@ -265,7 +265,11 @@ impl Contact for SurfaceContact {
         self.target = target.to_vec();
         let mut target = target.to_vec();
         target.iter_mut().zip(&self.off_target).for_each(|(target, off)| *target += off);
-        self.cover(stage.x_t0, &target);
+        // What the last stage found serves this one too: what it lacks comes from afar at a speed that
+        // only the test of the whole way has to stop.
+        if !self.candidates.are_around(stage.x_t0, self.obstacle_way().0) {
+            self.search(stage.x_t0, &target);
+        }
         let pairs = &self.candidates.pairs;
         let mut found = vec![(0.0, None, None); pairs.len()];
         par::fill(&mut found, |k| {

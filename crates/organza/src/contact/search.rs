@@ -26,7 +26,7 @@ impl SurfaceContact {
     }
 
     /// Finds candidates anew, for this way and for what is near it.
-    fn search(&mut self, x: &[World3], x_t1: &[World3]) {
+    pub(super) fn search(&mut self, x: &[World3], x_t1: &[World3]) {
         let off = ROOM * self.settings.thickness;
         let radius = |v: u32| self.radius[v as usize] + off;
         let mut found: Vec<(usize, Pair, f64)> = Vec::new();
