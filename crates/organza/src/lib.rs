@@ -82,6 +82,7 @@ pub mod fabric;
 pub mod handles;
 pub mod info;
 pub mod obstacle;
+mod obstacle_sizing;
 pub mod picture;
 pub mod record;
 pub mod remeshing;

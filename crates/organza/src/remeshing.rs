@@ -1,6 +1,8 @@
 //! The remeshing policy of a world: a sizing field, and limits for the whole mesh.
 
 use crate::build::Garment;
+use crate::contact::Obstacles;
+use crate::obstacle_sizing;
 use crate::report::ViewSummary;
 use crate::scene::Scene;
 use mesh_core::{ClothState, Mesh};
@@ -15,10 +17,15 @@ use std::time::Instant;
 /// would be seen to spring back.
 const HARDLY_STRAINED: [f64; 2] = [0.9, 1.1];
 
+/// How far off obstacles are followed, in units of the distance that cloth keeps from them (1).
+const OBSTACLE_REACH: f64 = 4.0;
+
 /// What a world wants of the remesher.
 pub struct Remeshing {
     sizing: Box<dyn SizingField>,
     view: Option<View>,
+    /// What obstacles may turn across an edge, by panel (rad); absent where it is nowhere bounded.
+    obstacle_angles: Option<Vec<f64>>,
     fixed_panels: Vec<u32>,
     stretch_limits: Vec<[f64; 2]>,
     aspect_min: f64,
@@ -32,6 +39,7 @@ impl Remeshing {
     pub fn new(scene: &Scene, garments: &[Garment], mesh: &Mesh) -> Option<Remeshing> {
         let mut fields = Vec::new();
         let (mut fixed_panels, mut stretch_limits) = (Vec::new(), Vec::new());
+        let mut obstacle_angles = Vec::new();
         let mut max_vertices = 0;
         let (mut aspect_min, mut hysteresis) = (1.0, 0.0);
         for (cloth, garment) in scene.cloths.iter().zip(garments) {
@@ -57,6 +65,8 @@ impl Remeshing {
             let limits = cloth.strain_limits.unwrap_or(HARDLY_STRAINED);
             stretch_limits.extend(garment.panels.clone().map(|_| limits));
             fields.extend(garment.panels.clone().map(|_| field));
+            let angle = cloth.remeshing.as_ref().and_then(|wish| wish.refine_obstacle);
+            obstacle_angles.extend(garment.panels.clone().map(|_| angle.unwrap_or(f64::INFINITY)));
         }
         // The limit is one for the whole mesh, of which fixed cloths have their part already.
         max_vertices += n_vertices_of(mesh, &fixed_panels);
@@ -64,6 +74,10 @@ impl Remeshing {
         let policy = Remeshing {
             sizing,
             view: View::new(scene),
+            obstacle_angles: obstacle_angles
+                .iter()
+                .any(|a| a.is_finite())
+                .then_some(obstacle_angles),
             fixed_panels,
             stretch_limits,
             aspect_min,
@@ -86,7 +100,13 @@ impl Remeshing {
         self.view.is_some()
     }
 
-    /// Remeshes for the frame at `time` (s), around the vertices `hold` by splits alone.
+    /// True if sizes depend on obstacles nearby.
+    pub fn follows_obstacles(&self) -> bool {
+        self.obstacle_angles.is_some()
+    }
+
+    /// Remeshes for the frame at `time` (s), around the vertices `hold` by splits alone, between
+    /// obstacles that keep a distance (m) from cloth.
     ///
     /// # Errors
     /// If a setting is out of range.
@@ -96,7 +116,16 @@ impl Remeshing {
         time: f64,
         keep: &[u64],
         hold: &[u64],
+        obstacles: Option<(&Obstacles, f64)>,
     ) -> Result<Remeshed, RemeshError> {
+        let mut clock = Instant::now();
+        let mut lap = || std::mem::replace(&mut clock, Instant::now()).elapsed().as_secs_f64();
+        let obstacle =
+            self.obstacle_angles.as_ref().zip(obstacles).map(|(angles, (bodies, room))| {
+                let angle = |panel: u32| angles[panel as usize];
+                obstacle_sizing::metrics(cloth, bodies, time, OBSTACLE_REACH * room, angle)
+            });
+        let obstacle_s = if obstacle.is_some() { lap() } else { 0.0 };
         let settings = RemeshSettings {
             aspect_min: self.aspect_min,
             hysteresis: self.hysteresis,
@@ -105,10 +134,8 @@ impl Remeshing {
             fixed_panels: &self.fixed_panels,
             stretch_limits: &self.stretch_limits,
             hold,
-            obstacle: None,
+            obstacle: obstacle.as_deref(),
         };
-        let mut clock = Instant::now();
-        let mut lap = || std::mem::replace(&mut clock, Instant::now()).elapsed().as_secs_f64();
         let factors = self.view.as_ref().map(|view| view.factors(cloth, time));
         let view_s = if factors.is_some() { lap() } else { 0.0 };
         let mut metrics = match &factors {
@@ -117,7 +144,7 @@ impl Remeshing {
                 CornerMetrics::evaluate(cloth, &ViewSizing::new(&*self.sizing, factors), &settings)?
             }
         };
-        let sizing_s = lap();
+        let sizing_s = obstacle_s + lap();
         let report = adapt(cloth, &mut metrics, &settings)?;
         let view = factors.as_ref().map(ViewSummary::of);
         Ok(Remeshed { report, view, view_s, sizing_s, edits_s: lap() })

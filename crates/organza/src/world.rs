@@ -11,8 +11,8 @@ use crate::handles::{Handles, by_name};
 use crate::obstacle::Obstacle;
 use crate::remeshing::Remeshing;
 use crate::report::{FrameReport, Seconds, StretchRange};
+use crate::scene::Loaded;
 use crate::scene::format::{Integrator, LinearSolver as Method};
-use crate::scene::{Dialect, Loaded};
 use bodies::{Bodies, appearing_in_cloth};
 use cloth_dynamics::solver::{LinearSettings, LinearSolver, PatternError, SolverKind};
 use cloth_dynamics::{
@@ -133,9 +133,8 @@ impl World {
     /// See [`BuildError`].
     pub fn new(loaded: &Loaded) -> Result<World, BuildError> {
         let built = build(loaded)?;
-        let Built { cloth, fabrics, garments, handles, obstacles, contact, mut warnings } = built;
-        let (contact, missing) = wanted_contact(contact, &obstacles, loaded.dialect);
-        warnings.extend(missing);
+        let Built { cloth, fabrics, garments, handles, obstacles, contact, warnings } = built;
+        let contact = wanted_contact(contact, &obstacles);
         let mut bodies = Bodies::default();
         if contact.is_some() {
             let updated = bodies.update(&obstacles, 0.0);
@@ -248,8 +247,10 @@ impl World {
             let saved = self.contact.is_some().then(|| self.cloth.clone());
             let is_tangled = self.tangled.matters();
             let tangled_before = if is_tangled { self.contour_length(frame) } else { 0.0 };
+            let obstacles = self.bodies.surface.as_ref().zip(self.contact.map(|c| c.thickness));
             let run = |cloth: &mut ClothState, hold: &[u64]| {
-                remeshing.run(cloth, frame as f64 * self.frame_s, &keep, hold).map_err(error)
+                let time = frame as f64 * self.frame_s;
+                remeshing.run(cloth, time, &keep, hold, obstacles).map_err(error)
             };
             let mut done = run(&mut self.cloth, &[])?;
             if let Some(saved) = saved {
@@ -425,6 +426,9 @@ impl World {
         note(self.remeshing.is_none(), "sizing, remeshing: all meshes are fixed");
         let looks = self.remeshing.as_ref().is_some_and(Remeshing::looks);
         note(!looks, "view: mesh sizes do not depend on a camera");
+        let follows = self.remeshing.as_ref().is_some_and(Remeshing::follows_obstacles);
+        let is_bound = follows && !self.obstacles.is_empty();
+        note(!is_bound, "sizing by obstacles: no mesh size depends on them");
         note(self.environment.wind.is_none(), "wind: none in the scene");
         let limits = self.fabrics.iter().any(|f| f.strain_limits.is_some());
         note(!limits, "strain limits: none in the scene");
@@ -437,20 +441,10 @@ impl World {
     }
 }
 
-/// The contact to simulate, and what the user should know of what is left out: cloth of an ARCSim
-/// scene without obstacles does not touch itself, unless the scene says so in our words.
+/// The contact to simulate: none where neither obstacles nor cloth itself can be touched.
 fn wanted_contact(
     contact: Option<ContactSettings>,
     obstacles: &[Obstacle],
-    dialect: Dialect,
-) -> (Option<ContactSettings>, Option<String>) {
-    match contact {
-        Some(settings) if !settings.self_contact && obstacles.is_empty() => (None, None),
-        Some(_) if dialect == Dialect::Arcsim && obstacles.is_empty() => {
-            let what =
-                "ARCSim lets cloth touch itself; in a scene without obstacles this is left out";
-            (None, Some(what.into()))
-        }
-        contact => (contact, None),
-    }
+) -> Option<ContactSettings> {
+    contact.filter(|settings| settings.self_contact || !obstacles.is_empty())
 }

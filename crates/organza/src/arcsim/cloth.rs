@@ -141,6 +141,8 @@ fn translate_remeshing(
         size_m: SizeRange { min, max },
         refine_angle: remeshing.refine_angle,
         refine_compression: remeshing.refine_compression,
+        // ARCSim refines near obstacles without being asked.
+        refine_obstacle: remeshing.refine_angle,
         refine_velocity: remeshing.refine_velocity,
         aspect_min: remeshing.aspect_min.unwrap_or(limits::ASPECT_RANGE[0]),
         hysteresis: default_hysteresis(),

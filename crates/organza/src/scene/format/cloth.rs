@@ -133,7 +133,7 @@ pub struct Spin {
     pub center: [f64; 3],
 }
 
-/// How the mesh adapts (Narain2012). The three `refine_` keys are the change across an edge at
+/// How the mesh adapts (Narain2012). The four `refine_` keys are the change across an edge at
 /// which it is worth splitting; one that is absent never asks for smaller triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -146,6 +146,9 @@ pub struct Remeshing {
     /// What a compressed edge may hide: 2.3 times the bulge it would show if it buckled (m).
     #[serde(default)]
     pub refine_compression: Option<f64>,
+    /// Turn of the normal of obstacles near the cloth (rad).
+    #[serde(default)]
+    pub refine_obstacle: Option<f64>,
     /// Difference of velocity (m/s).
     #[serde(default)]
     pub refine_velocity: Option<f64>,

@@ -167,6 +167,7 @@ fn check_remeshing(remeshing: &Remeshing, at: &At<'_>) {
     let refine = [
         ("refine_angle", remeshing.refine_angle, "rad"),
         ("refine_compression", remeshing.refine_compression, "m"),
+        ("refine_obstacle", remeshing.refine_obstacle, "rad"),
         ("refine_velocity", remeshing.refine_velocity, "m/s"),
     ];
     for (key, value, unit) in refine {
