@@ -2,7 +2,8 @@
 
 use super::program::Simulation;
 use super::report::{Figure, Report};
-use super::{Benchmark, Context, arcsim};
+use super::statistics::median;
+use super::{Benchmark, Context, arcsim, told_by_tests};
 use crate::command::{Failure, say};
 use std::fs;
 
@@ -23,6 +24,9 @@ fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
         context.save(report)?;
     }
     growth(context, report)?;
+    distant_obstacle(context, report)?;
+    context.save(report)?;
+    told_by_tests::contact(context, report)?;
     context.save(report)?;
     arcsim::run(context, report, &arcsim::SPHERE)
 }
@@ -49,6 +53,37 @@ fn scene(context: &Context, report: &mut Report, name: &str) -> Result<(), Failu
     let share = info.sum("/seconds/contact") / info.sum("/seconds/total");
     let what = "Share of the frames' time that finding contacts and keeping ways free takes.";
     report.add(&figure("share"), Figure::exact(share, "1", what));
+    Ok(())
+}
+
+/// What an obstacle costs that nothing comes near.
+fn distant_obstacle(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    let near = "{ mesh: { sphere: { radius_m: 0.2 } } }";
+    let far =
+        "{ mesh: { sphere: { radius_m: 0.2, detail: 5 } }, transform: { translate: [50, 0, 0] } }";
+    let frames = context.options.frames();
+    let mut simulations = Vec::new();
+    for (name, obstacles) in [("alone", near.to_string()), ("distant", format!("{near}, {far}"))] {
+        let text = format!(
+            "{{ frames: {frames}, substeps: 4, cloths: [{{ fabric: 'woven-light',
+                 mesh: {{ grid: {{ size_m: [1, 1], cells: [60, 60] }} }},
+                 transform: {{ translate: [-0.5, -0.5, 0.21] }} }}], obstacles: [{obstacles}] }}"
+        );
+        let scene = context.runs().join(format!("contact_{name}.json5"));
+        let told = |error| Failure::Unable(format!("cannot write {}: {error}", scene.display()));
+        fs::create_dir_all(context.runs()).and_then(|()| fs::write(&scene, text)).map_err(told)?;
+        let out = scene.with_extension("mcap");
+        simulations.push(Simulation { scene, frames, sets: Vec::new(), out });
+    }
+    say("a distant obstacle of 20480 triangles, with and without in turns");
+    let mut ratios = Vec::new();
+    for _ in 0..2 * context.options.runs() {
+        let [alone, distant] = [0, 1].map(|k| context.program.simulate(&simulations[k]));
+        ratios.push(distant?.info.sum("/seconds/total") / alone?.info.sum("/seconds/total") - 1.0);
+    }
+    say(format!("  {:.4} of the time more", median(&ratios).unwrap_or(f64::NAN)));
+    let note = "By how much frames take longer with it, median of runs in turns.";
+    report.add("contact.distant_obstacle.overhead", Figure::median(&ratios, "1", note));
     Ok(())
 }
 

@@ -16,6 +16,7 @@ mod report;
 mod run_info;
 mod statistics;
 mod surface;
+mod told_by_tests;
 
 use crate::command::{Command, Failure, say};
 use options::Options;
