@@ -1,8 +1,9 @@
 //! ARCSim's own scenes at its own settings, where its files are at hand: beside what ARCSim takes.
 
 use super::Context;
+use super::figure::Figure;
 use super::program::Simulation;
-use super::report::{Figure, Report};
+use super::report::Report;
 use crate::command::{Failure, say};
 use std::path::{Path, PathBuf};
 
@@ -131,6 +132,9 @@ fn measure(
         info.troubles()
     );
     report.add(&name("cpu_s"), Figure::median(&times, "s", &note));
+    let peaks: Vec<f64> = measured.iter().filter_map(|m| m.peak_mb).collect();
+    let note = "Peak of resident memory of the process; median of the runs.";
+    report.add(&name("peak_mb"), Figure::median(&peaks, "MB", note));
     let ratio: Vec<f64> = times.iter().map(|t| t / arcsim_cpu_s).collect();
     let note = format!("CPU seconds over the {arcsim_cpu_s:.1} s that ARCSim takes, as above.");
     report.add(&name("cpu_ratio"), Figure::median(&ratio, "1", &note));

@@ -1,8 +1,10 @@
 //! Contact: whether anything passes through anything, what it costs, and how that grows.
 
+use super::figure::Figure;
+use super::points::Points;
 use super::program::Simulation;
-use super::report::{Figure, Report};
-use super::statistics::median;
+use super::report::Report;
+use super::statistics::{median, power_law};
 use super::{Benchmark, Context, arcsim, told_by_tests};
 use crate::command::{Failure, say};
 use std::fs;
@@ -20,15 +22,13 @@ const CELLS: [usize; 4] = [22, 71, 224, 707];
 
 fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
     for name in SCENES {
-        scene(context, report, name)?;
-        context.save(report)?;
+        let part = format!("contact/{name}");
+        context.part(report, &part, |report| scene(context, report, name))?;
     }
-    growth(context, report)?;
-    distant_obstacle(context, report)?;
-    context.save(report)?;
-    told_by_tests::contact(context, report)?;
-    context.save(report)?;
-    arcsim::run(context, report, &arcsim::SPHERE)
+    context.part(report, "contact/growth", |report| growth(context, report))?;
+    context.part(report, "contact/distant", |report| distant_obstacle(context, report))?;
+    context.part(report, "contact/tests", |report| told_by_tests::contact(context, report))?;
+    context.part(report, "contact/arcsim", |r| arcsim::run(context, r, &arcsim::SPHERE))
 }
 
 /// Runs a scene to its end, or as far as a quick run goes.
@@ -50,6 +50,9 @@ fn scene(context: &Context, report: &mut Report, name: &str) -> Result<(), Failu
     say(format!("  {:.2} CPU seconds, {crossings} crossings", run.cpu_s));
     report.add(&figure("intersections"), Figure::exact(crossings, "1", &note));
     report.add(&figure("cpu_s_per_frame"), Figure::exact(run.cpu_s / frames as f64, "s", &note));
+    let what = "Peak of resident memory of the process.";
+    let peak = run.peak_mb.and_then(|mb| Figure::exact(mb, "MB", what));
+    report.add(&figure("peak_mb"), peak);
     let share = info.sum("/seconds/contact") / info.sum("/seconds/total");
     let what = "Share of the frames' time that finding contacts and keeping ways free takes.";
     report.add(&figure("share"), Figure::exact(share, "1", what));
@@ -113,33 +116,15 @@ fn growth(context: &Context, report: &mut Report) -> Result<(), Failure> {
             &format!("contact.scaling.{triangles}.s_per_step"),
             Figure::exact(seconds, "s", "Wall time of contact in a step, one thread."),
         );
-        points.push((triangles.ln(), seconds.ln()));
+        points.push((triangles, seconds));
     }
     let note = "Slope of the logarithm of the time against that of the number of triangles, least squares.";
-    report
-        .add("contact.scaling.exponent", slope(&points).and_then(|s| Figure::exact(s, "1", note)));
+    let pairs: Vec<[f64; 2]> = points.iter().map(|&(x, y)| [x, y]).collect();
+    let exponent = power_law(&pairs).and_then(|(power, _)| Figure::exact(power, "1", note));
+    report.add("contact.scaling.exponent", exponent);
+    let axes = ["triangles", "contact in a step"];
+    let note = "A sheet on a sphere; wall time, one thread.";
+    let growth = Points::growth("growth of contact with the mesh", axes, ["1", "s"], &points, note);
+    report.points("contact.scaling", growth);
     Ok(())
-}
-
-/// The slope of the straight line that fits best; `None` without two different points.
-fn slope(points: &[(f64, f64)]) -> Option<f64> {
-    let n = points.len() as f64;
-    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
-    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
-    let along: f64 = points.iter().map(|p| (p.0 - x) * (p.0 - x)).sum();
-    let rise: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
-    (along > 0.0).then(|| rise / along)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::slope;
-
-    #[test]
-    fn slopes_of_straight_lines_are_exact() {
-        let line: Vec<(f64, f64)> = [0.0, 1.0, 4.0].iter().map(|&x| (x, 3.0 - 2.0 * x)).collect();
-        assert!((slope(&line).unwrap() + 2.0).abs() < 1e-12);
-        assert_eq!(slope(&line[..1]), None);
-        assert_eq!(slope(&[]), None);
-    }
 }

@@ -2,8 +2,9 @@
 //! finer reference.
 
 use super::Context;
+use super::figure::Figure;
 use super::program::{Measured, Simulation};
-use super::report::{Figure, Report};
+use super::report::Report;
 use super::surface::{Surface, lattice};
 use crate::command::{Failure, say};
 use std::fs;
@@ -153,6 +154,9 @@ fn times(report: &mut Report, name: &str, v: &Variant<'_>) {
     );
     let figure = Figure::median(&v.cpu_s_per_frame(), "s", &note);
     report.add(&format!("{name}.cpu_s_per_frame.{}", v.name), figure);
+    let note = "Peak of resident memory of the process; median of the runs.";
+    let peaks: Vec<f64> = v.measured.iter().filter_map(|m| m.peak_mb).collect();
+    report.add(&format!("{name}.peak_mb.{}", v.name), Figure::median(&peaks, "MB", note));
     for stage in info.stages() {
         let pointer = format!("/seconds/{stage}");
         let values: Vec<f64> = v.measured.iter().map(|m| m.info.mean(&pointer)).collect();

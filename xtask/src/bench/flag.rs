@@ -16,7 +16,8 @@ fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
         let name = scene.file_stem().unwrap_or_default().to_string_lossy();
         return fixed_or_adaptive::run(context, report, &name, scene);
     }
-    fixed_or_adaptive::run(context, report, "flag", &context.root.join("scenes/flag.json5"))?;
-    context.save(report)?;
-    arcsim::run(context, report, &arcsim::FLAG)
+    context.part(report, "flag/scene", |report| {
+        fixed_or_adaptive::run(context, report, "flag", &context.root.join("scenes/flag.json5"))
+    })?;
+    context.part(report, "flag/arcsim", |report| arcsim::run(context, report, &arcsim::FLAG))
 }

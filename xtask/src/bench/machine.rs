@@ -1,9 +1,7 @@
-//! Where and on what the figures were measured.
+//! The machine on which figures were measured.
 
 use serde_json::{Value, json};
 use std::fs;
-use std::path::Path;
-use std::process::Command;
 
 /// The machine, as far as it tells.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -32,6 +30,31 @@ impl Machine {
         let Machine { cores, cpu_model, load_average } = self;
         json!({ "cores": cores, "cpu_model": cpu_model, "load_average": load_average })
     }
+
+    /// Reads what [`Machine::json`] made; what is missing is not known.
+    pub(super) fn read(json: &Value) -> Machine {
+        Machine {
+            cores: json["cores"].as_u64().map(|n| n as usize),
+            cpu_model: json["cpu_model"].as_str().map(str::to_owned),
+            load_average: json["load_average"].as_f64(),
+        }
+    }
+
+    /// True if times on both can be compared, as far as is known.
+    pub(super) fn is_same(&self, other: &Machine) -> bool {
+        (self.cores, &self.cpu_model) == (other.cores, &other.cpu_model)
+    }
+
+    /// One line on it.
+    pub(super) fn text(&self) -> String {
+        let known = |text: Option<String>| text.unwrap_or_else(|| "unknown".into());
+        format!(
+            "{} cores of {}, load {} when it began",
+            known(self.cores.map(|n| n.to_string())),
+            known(self.cpu_model.clone()),
+            known(self.load_average.map(|x| x.to_string()))
+        )
+    }
 }
 
 fn cpu_model(cpuinfo: &str) -> Option<String> {
@@ -39,18 +62,18 @@ fn cpu_model(cpuinfo: &str) -> Option<String> {
     Some(line.split_once(':')?.1.trim().to_owned())
 }
 
-/// The commit of the workspace, with `-dirty` behind it where files have changed since. `None`
-/// where there is no git.
-pub(super) fn commit(root: &Path) -> Option<String> {
-    let arguments = ["describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"];
-    let output = Command::new("git").args(arguments).current_dir(root).output().ok()?;
-    let text = String::from_utf8(output.stdout).ok()?;
-    (output.status.success() && !text.trim().is_empty()).then(|| text.trim().to_owned())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn json_reads_back_and_load_does_not_make_another_machine() {
+        let machine =
+            Machine { cores: Some(2), cpu_model: Some("A".into()), load_average: Some(0.5) };
+        assert_eq!(Machine::read(&machine.json()), machine);
+        assert!(machine.is_same(&Machine { load_average: None, ..machine.clone() }));
+        assert!(!machine.is_same(&Machine { cores: Some(4), ..machine.clone() }));
+    }
 
     #[test]
     fn the_model_is_one_of_many_lines() {

@@ -5,22 +5,33 @@
 //! [`Report`].
 
 mod arcsim;
+mod baseline;
+mod child;
 mod contact;
 mod cpu_time;
+mod figure;
 mod fixed_or_adaptive;
 mod flag;
+mod html;
+mod kernels;
 mod machine;
+mod number;
 mod options;
+mod pareto;
+mod points;
 mod program;
+mod provenance;
 mod report;
 mod run_info;
 mod statistics;
 mod surface;
+mod table;
 mod told_by_tests;
 
 use crate::command::{Command, Failure, say};
 use options::Options;
 use program::Program;
+use provenance::Provenance;
 use report::Report;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -28,7 +39,7 @@ use std::path::{Path, PathBuf};
 /// The command.
 pub const COMMAND: Command = Command {
     name: "bench",
-    summary: "Measure speed and error of the program; writes report.json",
+    summary: "Measure speed and error of the program; writes report.json and report.html",
     help,
     run,
 };
@@ -43,7 +54,7 @@ struct Benchmark {
 }
 
 /// All benchmarks, in the order in which they run.
-const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK, contact::BENCHMARK];
+const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK, contact::BENCHMARK, pareto::BENCHMARK];
 
 /// What a benchmark works with.
 struct Context {
@@ -53,6 +64,8 @@ struct Context {
     out: PathBuf,
     options: Options,
     program: Program,
+    /// An earlier report to compare with.
+    baseline: Option<Report>,
 }
 
 impl Context {
@@ -61,23 +74,73 @@ impl Context {
         self.out.join("runs")
     }
 
-    /// Writes the figures found so far, so that a long benchmark that is stopped leaves something.
+    /// Writes what was found so far, so that a long benchmark that is stopped leaves something.
     fn save(&self, report: &Report) -> Result<(), Failure> {
-        let path = self.out.join("report.json");
-        fs::write(&path, report.json())
-            .map_err(|error| Failure::Unable(format!("cannot write {}: {error}", path.display())))
+        let changes = self.baseline.as_ref().map(|before| baseline::compare(before, report));
+        write(&self.out.join("report.json"), &report.json())?;
+        write(&self.out.join("report.html"), &html::page(report, changes.as_ref()))
     }
+
+    /// Measures a part of a suite, named `suite/part`, unless a run that was stopped has it.
+    fn part(
+        &self,
+        report: &mut Report,
+        name: &str,
+        measure: impl FnOnce(&mut Report) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        if report.is_finished(name) {
+            say(format!("{name}: kept from the run that was stopped"));
+            return Ok(());
+        }
+        say(format!("\n{name}"));
+        let around = report.begin(name);
+        measure(report)?;
+        report.finish(around);
+        self.save(report)
+    }
+
+    /// The report to begin with: what an earlier run in the same folder has measured under the same
+    /// circumstances, without what is to be measured again.
+    fn start(&self, chosen: &[&Benchmark]) -> Report {
+        let provenance = Provenance::here(&self.root, self.options.that_matter());
+        let earlier = fs::read_to_string(self.out.join("report.json"));
+        let earlier = earlier.ok().and_then(|text| Report::read(&text).ok());
+        let same = |report: &Report| report.provenance.is_same(&provenance);
+        let Some(mut report) = earlier.filter(|r| !self.options.fresh && same(r)) else {
+            return Report::new(provenance);
+        };
+        if report.complete {
+            // A new run of what was finished is a new measurement; other suites stay.
+            chosen.iter().for_each(|suite| report.forget_suite(suite.name));
+        } else {
+            say("going on with a run that was stopped; --fresh starts over");
+        }
+        report.complete = false;
+        report
+    }
+}
+
+/// The part of the report that `cargo bench` has measured.
+const KERNELS: &str = "kernels";
+
+/// Writes a file so that it is never there in halves.
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    let half = path.with_extension("tmp");
+    fs::write(&half, text)
+        .and_then(|()| fs::rename(&half, path))
+        .map_err(|error| Failure::Unable(format!("cannot write {}: {error}", path.display())))
 }
 
 fn help() -> String {
     let list: String =
-        BENCHMARKS.iter().map(|b| format!("  {:8}{}\n", b.name, b.summary)).collect();
+        BENCHMARKS.iter().map(|b| format!("  {:12}{}\n", b.name, b.summary)).collect();
     format!(
         "Usage: cargo xtask bench [NAME]… [OPTIONS]\n\nBenchmarks, all unless named:\n{list}\n\
          Options:\n{}\n\
          Builds the program first. Runs it on one thread and counts CPU seconds, which other load\n\
-         on the machine still makes longer: compare runs made on a quiet one.\n\n\
-         Examples:\n  cargo xtask bench\n  cargo xtask bench flag --quick\n  \
+         on the machine still makes longer: compare runs made on a quiet one. A run that was\n\
+         stopped goes on where it was if commit, changes, options and machine are the same.\n\n\
+         Examples:\n  cargo xtask bench\n  cargo xtask bench pareto --quick --baseline before\n  \
          cargo xtask bench flag --scene scenes/hang.json5 --out target/hang\n",
         options::HELP
     )
@@ -89,17 +152,30 @@ fn run(root: &Path, arguments: &[String]) -> Result<(), Failure> {
     let named = |b: &&Benchmark| options.names.is_empty() || options.names.contains(&b.name.into());
     let chosen: Vec<&Benchmark> = BENCHMARKS.iter().filter(named).collect();
 
+    let baseline = options.baseline.as_deref().map(baseline::read).transpose()?;
     say("building the program");
     let program = Program::build(root)?;
-    let context = Context { root: root.to_owned(), out, options, program };
+    let context = Context { root: root.to_owned(), out, options, program, baseline };
     let runs = context.runs();
     fs::create_dir_all(&runs)
         .map_err(|error| Failure::Unable(format!("cannot make {}: {error}", runs.display())))?;
-    let mut report = Report::new(machine::Machine::here(), machine::commit(root));
+    let mut report = context.start(&chosen);
     for benchmark in chosen {
-        (benchmark.run)(&context, &mut report)?;
-        context.save(&report)?;
+        let measure = |report: &mut Report| (benchmark.run)(&context, report);
+        context.part(&mut report, benchmark.name, measure)?;
     }
-    say(format!("\n{}\nreport: {}", report.table(), context.out.join("report.json").display()));
+    let around = report.begin(KERNELS);
+    kernels::take(&mut report, root);
+    report.finish(around);
+    report.complete = true;
+    context.save(&report)?;
+    say(format!("\n{}", report.text()));
+    if let Some(before) = &context.baseline {
+        let changes = baseline::compare(before, &report);
+        say(format!("\nchanges beyond noise:\n{}", baseline::text(&changes)));
+    }
+    for name in ["report.json", "report.html"] {
+        say(format!("{}", context.out.join(name).display()));
+    }
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! The arguments of `cargo xtask bench`.
 
 use super::BENCHMARKS;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 
 /// What help says of the options.
@@ -9,7 +10,9 @@ pub(super) const HELP: &str = "  \
   --frames N    frames of each run [default: 20; 6 with --quick]
   --runs N      how often each run is repeated [default: 3; 1 with --quick]
   --scene S     scene of the comparison of fixed and adaptive [default: scenes/flag.json5]
-  --out DIR     folder for report.json and the recordings [default: target/bench]
+  --out DIR     folder of report.json, report.html and the recordings [default: target/bench]
+  --baseline DIR  folder of an earlier report.json to compare with
+  --fresh       forget what a stopped run has measured
 ";
 
 /// What was asked for.
@@ -22,6 +25,8 @@ pub(super) struct Options {
     runs: Option<usize>,
     pub(super) scene: Option<PathBuf>,
     pub(super) out: Option<PathBuf>,
+    pub(super) baseline: Option<PathBuf>,
+    pub(super) fresh: bool,
 }
 
 impl Options {
@@ -33,6 +38,14 @@ impl Options {
     /// Repetitions of each run.
     pub(super) fn runs(&self) -> usize {
         self.runs.unwrap_or(if self.quick { 1 } else { 3 })
+    }
+
+    /// What figures depend on: two runs that differ in it do not measure the same.
+    pub(super) fn that_matter(&self) -> Value {
+        let scene = self.scene.as_ref().map(|path| path.display().to_string());
+        json!({
+            "quick": self.quick, "frames": self.frames(), "runs": self.runs(), "scene": scene,
+        })
     }
 
     /// Reads the arguments; the error says what is wrong with them.
@@ -49,6 +62,8 @@ impl Options {
                 "--frames" => options.frames = Some(count(argument, &value()?)?),
                 "--runs" => options.runs = Some(count(argument, &value()?)?),
                 "--scene" => options.scene = Some(value()?.into()),
+                "--baseline" => options.baseline = Some(value()?.into()),
+                "--fresh" => options.fresh = true,
                 "--out" => options.out = Some(value()?.into()),
                 name if BENCHMARKS.iter().any(|b| b.name == name) => {
                     options.names.push(name.to_owned());
@@ -86,7 +101,19 @@ mod tests {
     fn options_are_taken_in_any_order() {
         let options = parse("--out a/b --frames 4 flag --runs 5 --scene s.json5").unwrap();
         assert_eq!((options.frames(), options.runs()), (4, 5));
+        assert!(options.baseline.is_none() && !options.fresh);
         assert_eq!((options.out, options.scene), (Some("a/b".into()), Some("s.json5".into())));
+    }
+
+    #[test]
+    fn only_what_figures_depend_on_matters() {
+        let plain = parse("--runs 1").unwrap().that_matter();
+        let same = parse("flag --runs 1 --out a --baseline b --fresh").unwrap();
+        assert_eq!(same.that_matter(), plain);
+        assert_eq!((same.baseline, same.fresh), (Some("b".into()), true));
+        for other in ["--runs 2", "--runs 1 --quick", "--runs 1 --scene s"] {
+            assert_ne!(parse(other).unwrap().that_matter(), plain, "{other}");
+        }
     }
 
     #[test]

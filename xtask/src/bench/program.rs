@@ -1,6 +1,6 @@
 //! The program under test, run as its users run it.
 
-use super::cpu_time;
+use super::child;
 use super::run_info::RunInfo;
 use crate::command::Failure;
 use serde_json::Value;
@@ -30,6 +30,8 @@ pub(super) struct Simulation {
 pub(super) struct Measured {
     /// CPU time of the whole process, from reading the scene to drawing the last frame (s).
     pub(super) cpu_s: f64,
+    /// Peak of its resident memory (MB), where Linux tells it.
+    pub(super) peak_mb: Option<f64>,
     pub(super) info: RunInfo,
 }
 
@@ -67,10 +69,8 @@ impl Program {
         sets.iter().for_each(|set| {
             command.args(["--set", set]);
         });
-        let before = cpu_time::of_children()?;
         // Standard error is the user's: progress, warnings, what failed.
-        let status = command.stdout(Stdio::null()).status().map_err(self.cannot_start())?;
-        let cpu_s = cpu_time::of_children()? - before;
+        let child::Ended { status, cpu_s, peak_mb } = child::run(command.stdout(Stdio::null()))?;
         if !status.success() {
             let scene = scene.display();
             return Err(Failure::Unable(format!("the simulation of {scene} failed ({status})")));
@@ -81,7 +81,7 @@ impl Program {
             let (n, out) = (info.n_frames(), out.display());
             return Err(Failure::Unable(format!("{out} has {n} frames instead of {frames}")));
         }
-        Ok(Measured { cpu_s, info })
+        Ok(Measured { cpu_s, peak_mb, info })
     }
 
     /// How many frames a scene has after the first.

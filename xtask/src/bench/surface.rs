@@ -6,7 +6,7 @@ use std::path::Path;
 /// A point of material space (m).
 type Material = [f64; 2];
 /// A point of space (m).
-type World = [f64; 3];
+pub(super) type World = [f64; 3];
 
 /// How far outside of a triangle a point may be, as a barycentric coordinate, before no triangle
 /// holds it: points on the border of a sheet are off it by rounding.
@@ -69,18 +69,26 @@ impl Surface {
         Some(std::array::from_fn(|k| (0..3).map(|i| weights[i] * world[i][k]).sum()))
     }
 
+    /// Where material points are. The error names one that is not on the sheet.
+    pub(super) fn places(&self, points: &[Material]) -> Result<Vec<World>, String> {
+        let place = |&point: &Material| {
+            self.at(point)
+                .ok_or_else(|| format!("the material point {point:?} is not on the cloth"))
+        };
+        points.iter().map(place).collect()
+    }
+
     /// Root mean square distance between the same material points of two surfaces (m). The error
     /// names a point that is not on both.
     pub(super) fn rms_distance(&self, other: &Surface, points: &[Material]) -> Result<f64, String> {
-        let mut sum = 0.0;
-        for &point in points {
-            let (Some(a), Some(b)) = (self.at(point), other.at(point)) else {
-                return Err(format!("the material point {point:?} is not on the cloth"));
-            };
-            sum += (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>();
-        }
-        Ok((sum / points.len() as f64).sqrt())
+        Ok(rms(&self.places(points)?, &other.places(points)?))
     }
+}
+
+/// Root mean square distance of points and their counterparts (m).
+pub(super) fn rms(one: &[World], other: &[World]) -> f64 {
+    let square = |(a, b): (&World, &World)| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>();
+    (one.iter().zip(other).map(square).sum::<f64>() / one.len() as f64).sqrt()
 }
 
 /// `nx` by `ny` points over a rectangle, its border included; at least two in each direction.

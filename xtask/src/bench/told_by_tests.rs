@@ -1,7 +1,8 @@
 //! Figures that tests print: counts over more cases than one would like to repeat here.
 
 use super::Context;
-use super::report::{Figure, Report};
+use super::figure::Figure;
+use super::report::Report;
 use crate::command::{Failure, say};
 use std::process::{Command, Stdio};
 

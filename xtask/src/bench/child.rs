@@ -1,0 +1,76 @@
+//! A child process, run to its end: CPU seconds and peak memory.
+
+use super::cpu_time;
+use crate::command::Failure;
+use std::fs;
+use std::process::{Command, ExitStatus};
+use std::time::Duration;
+
+/// How often the memory is looked at. Linux keeps the peak itself, so that only what is added in the
+/// last moments can be missed.
+const LOOK: Duration = Duration::from_millis(4);
+
+/// What a child took.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ended {
+    pub(super) status: ExitStatus,
+    /// User and system time (s).
+    pub(super) cpu_s: f64,
+    /// Peak of resident memory (MB = 10⁶ bytes), where Linux tells it.
+    pub(super) peak_mb: Option<f64>,
+}
+
+/// Runs a command to its end. No other child may end meanwhile.
+///
+/// # Errors
+/// If it cannot be started.
+pub(super) fn run(command: &mut Command) -> Result<Ended, Failure> {
+    let program = command.get_program().to_string_lossy().into_owned();
+    let told = |error| Failure::Unable(format!("cannot start {program}: {error}"));
+    let before = cpu_time::of_children()?;
+    let mut child = command.spawn().map_err(told)?;
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak_mb = None;
+    let ended = loop {
+        peak_mb = fs::read_to_string(&status).ok().and_then(|text| peak(&text)).or(peak_mb);
+        match child.try_wait() {
+            Ok(Some(ended)) => break ended,
+            Ok(None) => std::thread::sleep(LOOK),
+            Err(error) => return Err(Failure::Unable(format!("cannot wait: {error}"))),
+        }
+    };
+    Ok(Ended { status: ended, cpu_s: cpu_time::of_children()? - before, peak_mb })
+}
+
+/// `VmHWM` of proc_pid_status(5), which is in KiB (MB). A process that has ended has none.
+fn peak(status: &str) -> Option<f64> {
+    let rest = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let kib: f64 = rest.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib * 1024.0 / 1e6)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_peak_is_one_of_many_lines() {
+        let status = "Name:\tx\nVmPeak:\t  9 kB\nVmHWM:\t  250000 kB\nVmRSS:\t 1 kB\n";
+        assert_eq!(peak(status), Some(256.0));
+        assert_eq!(peak("Name:\tx\nState:\tZ (zombie)\n"), None);
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_child_that_holds_memory_is_seen_to() {
+        // Long enough to be looked at, with a string of 2²⁴ letters.
+        let script =
+            "x=x; i=0; while [ $i -lt 24 ]; do x=$x$x; i=$((i+1)); done; sleep 0.3; exit 3";
+        let ended = run(Command::new("sh").args(["-c", script])).unwrap();
+        assert_eq!(ended.status.code(), Some(3));
+        assert!(ended.peak_mb.unwrap() > 16.0, "{ended:?}");
+        assert!(
+            matches!(run(&mut Command::new("/no/such")), Err(Failure::Unable(w)) if w.contains("/no/such"))
+        );
+    }
+}

@@ -1,0 +1,275 @@
+//! Error against CPU time: every scene by every method, as the knobs sweep.
+
+mod method;
+mod scene;
+mod settings;
+
+use super::figure::Figure;
+use super::points::{Point, Points};
+use super::program::{Measured, Simulation};
+use super::report::Report;
+use super::statistics::{front_ratio, mean, median, spread};
+use super::surface::{Surface, World, lattice, rms};
+use super::table::{Cell, Table, Tone};
+use super::{Benchmark, Context, number};
+use crate::command::{Failure, say};
+use method::{METHODS, Method};
+use scene::{Plan, SCENES, Scene};
+use settings::Setting;
+use std::fs;
+
+pub(super) const BENCHMARK: Benchmark = Benchmark {
+    name: "pareto",
+    summary: "error against CPU time as the knobs sweep, on fixed and adaptive meshes",
+    run,
+};
+
+/// Material points in each direction at which surfaces are compared.
+const LATTICE: [usize; 2] = [25, 25];
+
+fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    let asked = context.options.scene.as_ref().map(|path| {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        SCENES.iter().find(|scene| scene.name == name).ok_or_else(|| {
+            let known: Vec<&str> = SCENES.iter().map(|scene| scene.name).collect();
+            Failure::Unable(format!("pareto has the scenes {}, not `{name}`", known.join(", ")))
+        })
+    });
+    let scenes: Vec<&Scene> = match asked {
+        Some(scene) => vec![scene?],
+        None => SCENES.iter().collect(),
+    };
+    for scene in scenes {
+        let part = format!("pareto/{}", scene.name);
+        context.part(report, &part, |report| sweep(context, report, scene))?;
+    }
+    Ok(())
+}
+
+/// Where the material points are in each frame but the first.
+type Path = Vec<Vec<World>>;
+
+/// One way to run a scene, and what came of it.
+struct Candidate {
+    method: &'static Method,
+    setting: Setting,
+    measured: Vec<Measured>,
+    /// Mean over the frames of the RMS distance from the reference (m).
+    error: f64,
+    /// Why it could not be run.
+    failure: Option<String>,
+}
+
+fn sweep(context: &Context, report: &mut Report, scene: &Scene) -> Result<(), Failure> {
+    let plan = scene.plan(context.options.quick);
+    let points = lattice([[0.0; 2], scene.size_m], LATTICE);
+
+    let [reference, other] = scene.references(plan);
+    let (truth, cost) = follow(context, scene, plan, "reference", &reference, &points)?;
+    let (second, _) = follow(context, scene, plan, "reference", &other, &points)?;
+    let floor = distance(&truth, &second);
+    say(format!("  floor {} m: two references apart", number::short(floor)));
+
+    let mut candidates: Vec<Candidate> = METHODS
+        .iter()
+        .filter(|method| !context.options.quick || method.quick)
+        .flat_map(|method| method.settings(scene, plan).into_iter().map(move |s| (method, s)))
+        .map(|(method, setting)| Candidate {
+            method,
+            setting,
+            measured: Vec::new(),
+            error: f64::NAN,
+            failure: None,
+        })
+        .collect();
+    for candidate in &mut candidates {
+        let Candidate { method, setting, .. } = candidate;
+        match follow(context, scene, plan, method.name, setting, &points) {
+            Ok((path, measured)) => {
+                candidate.error = distance(&path, &truth);
+                candidate.measured.push(measured);
+                say(format!("    error {} m", number::short(candidate.error)));
+            }
+            Err(Failure::Unable(why)) => candidate.failure = Some(why),
+            Err(failure) => return Err(failure),
+        }
+    }
+    // All take turns, so that a change of load on the machine meets all alike.
+    for _ in 1..context.options.runs() {
+        for candidate in candidates.iter_mut().filter(|c| c.failure.is_none()) {
+            let Candidate { method, setting, .. } = candidate;
+            let simulation = simulation(context, scene, plan, method.name, setting);
+            candidate.measured.push(context.program.simulate(&simulation)?);
+        }
+    }
+    tell(report, scene, plan, &candidates, floor, &cost);
+    Ok(())
+}
+
+fn simulation(
+    context: &Context,
+    scene: &Scene,
+    plan: &Plan,
+    method: &str,
+    setting: &Setting,
+) -> Simulation {
+    Simulation {
+        scene: context.root.join(format!("scenes/{}.json5", scene.name)),
+        frames: plan.frames,
+        sets: setting.sets.clone(),
+        out: context.runs().join(format!("pareto_{}_{method}.mcap", scene.name)),
+    }
+}
+
+/// Runs a scene and follows the material points.
+fn follow(
+    context: &Context,
+    scene: &Scene,
+    plan: &Plan,
+    method: &str,
+    setting: &Setting,
+    points: &[[f64; 2]],
+) -> Result<(Path, Measured), Failure> {
+    say(format!("  {} {method}: {}", scene.name, setting.label));
+    let simulation = simulation(context, scene, plan, method, setting);
+    let measured = context.program.simulate(&simulation)?;
+    say(format!(
+        "    {:.2} CPU seconds, {:.0} faces",
+        measured.cpu_s,
+        measured.info.mean("/faces")
+    ));
+    let folder = simulation.out.with_extension("frames");
+    context.program.export_obj(&simulation.out, plan.frames, &folder)?;
+    let path = (1..=plan.frames)
+        .map(|frame| {
+            let surface = Surface::read(&folder.join(format!("frame_{frame:05}.obj")))?;
+            surface.places(points)
+        })
+        .collect::<Result<Path, String>>()
+        .map_err(|why| Failure::Unable(format!("{}, {method}: {why}", scene.name)));
+    // The recording holds all that is in them.
+    let _ = fs::remove_dir_all(&folder);
+    Ok((path?, measured))
+}
+
+/// Mean over the frames of the RMS distance of the same material points (m).
+fn distance(one: &Path, other: &Path) -> f64 {
+    let each: Vec<f64> = one.iter().zip(other).map(|(a, b)| rms(a, b)).collect();
+    mean(&each).unwrap_or(f64::NAN)
+}
+
+/// Adds what was found.
+fn tell(
+    report: &mut Report,
+    scene: &Scene,
+    plan: &Plan,
+    candidates: &[Candidate],
+    floor: f64,
+    cost: &Measured,
+) {
+    let name = |what: &str| format!("pareto.{}.{what}", scene.name);
+    let [nx, ny] = LATTICE;
+    let note = format!(
+        "RMS distance from a reference of {:.0} faces at the same {nx} × {ny} material points, mean \
+         over frames 1 to {}. {} CPU seconds of the whole process, median of the runs. The floor is \
+         the distance of two references, with edges of {} and {} mm: smaller errors cannot be told \
+         from those of the reference.",
+        cost.info.mean("/faces"),
+        plan.frames,
+        scene.note,
+        number::short(1e3 * plan.reference.edge_m),
+        number::short(1e3 * plan.other_edge_m),
+    );
+    report.add(&name("floor"), Figure::exact(floor, "m", &note));
+    let whole = "The reference, run once.";
+    report.add(&name("reference.cpu_s"), Figure::exact(cost.cpu_s, "s", whole));
+    let peak = cost.peak_mb.and_then(|mb| Figure::exact(mb, "MB", "Peak of resident memory."));
+    report.add(&name("reference.peak_mb"), peak);
+
+    let mut first: Option<Vec<[f64; 2]>> = None;
+    for method in METHODS {
+        let points: Vec<Point> =
+            candidates.iter().filter(|c| c.method.name == method.name).filter_map(point).collect();
+        if points.is_empty() {
+            continue;
+        }
+        let pairs: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
+        report.points(&name(method.name), Points::errors(scene.name, points, floor, &note));
+        let Some(fixed) = &first else {
+            first = Some(pairs);
+            continue;
+        };
+        compare(report, &name(&format!("cpu_ratio.{}", method.name)), method, &pairs, fixed);
+    }
+    report.table_of(&name("runs"), table(candidates, &note));
+}
+
+/// How the front of a method lies to that of the fixed mesh.
+fn compare(
+    report: &mut Report,
+    name: &str,
+    method: &Method,
+    pairs: &[[f64; 2]],
+    fixed: &[[f64; 2]],
+) {
+    let Some(ratio) = front_ratio(pairs, fixed) else {
+        return report.remark(&format!("{name} is left out: the fronts have no error in common."));
+    };
+    let note = "CPU seconds over those on the fixed mesh at equal error: geometric mean along the \
+                part of the fronts that have errors in common. Below 1 the method pays.";
+    report.add(name, Figure::exact(ratio, "1", note));
+    if ratio >= 1.0 {
+        let told = number::short(ratio);
+        report.remark(&format!(
+            "{name}: {} does not lie below fixed here; it takes {told} times as long at equal error.",
+            method.name
+        ));
+    }
+}
+
+fn point(candidate: &Candidate) -> Option<Point> {
+    let times: Vec<f64> = candidate.measured.iter().map(|m| m.cpu_s).collect();
+    let (y, spread, n) = (median(&times)?, spread(&times)?, times.len());
+    let label = candidate.setting.label.clone();
+    Some(Point { x: candidate.error, y, spread, n, label })
+}
+
+fn table(candidates: &[Candidate], note: &str) -> Table {
+    let columns =
+        ["method", "settings", "RMS error (m)", "CPU (s)", "faces", "peak (MB)", "unconverged"];
+    let row = |c: &Candidate| {
+        let mut row = vec![Cell::plain(c.method.name), Cell::plain(&c.setting.label)];
+        let (Some(point), Some(run)) = (point(c), c.measured.first()) else {
+            let text = c.failure.clone().unwrap_or_default();
+            row.push(Cell { text, tone: Tone::Bad });
+            return row;
+        };
+        let (unconverged, stages) = (run.info.sum("/unconverged_stages"), run.info.sum("/stages"));
+        row.extend([
+            Cell::plain(number::short(point.x)),
+            Cell::plain(number::short(point.y)),
+            Cell::plain(format!("{:.0}", run.info.mean("/faces"))),
+            Cell::plain(run.peak_mb.map_or(String::new(), number::short)),
+            Cell::plain(format!("{unconverged} of {stages} stages")),
+        ]);
+        row
+    };
+    Table {
+        columns: columns.map(str::to_owned).to_vec(),
+        rows: candidates.iter().map(row).collect(),
+        note: note.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_means_of_rms() {
+        let one = vec![vec![[0.0; 3], [0.0; 3]], vec![[1.0, 0.0, 0.0]; 2]];
+        let other = vec![vec![[3.0, 0.0, 4.0], [0.0, 5.0, 0.0]], vec![[1.0, 0.0, 1.0]; 2]];
+        assert!((distance(&one, &other) - 3.0).abs() < 1e-14);
+        assert!(distance(&Vec::new(), &other).is_nan());
+    }
+}

@@ -1,0 +1,189 @@
+//! The scenes, how far they are followed, and how fine.
+
+use super::settings::{Level, Setting, fixed_mesh};
+
+/// A scene of the project with one cloth made by `grid`.
+pub(super) struct Scene {
+    /// Name of its file, without ending.
+    pub(super) name: &'static str,
+    /// Its cloth (m).
+    pub(super) size_m: [f64; 2],
+    /// Longest edges of adaptive meshes (m).
+    pub(super) coarsest_m: f64,
+    /// The step that the file asks for.
+    pub(super) integrator: &'static str,
+    /// Why it is followed as far as it is.
+    pub(super) note: &'static str,
+    quick: Plan,
+    full: Plan,
+}
+
+/// How far a scene is followed, and how fine.
+pub(super) struct Plan {
+    /// Frames after the first.
+    pub(super) frames: usize,
+    /// From coarse to fine.
+    pub(super) levels: &'static [Level],
+    pub(super) reference: Level,
+    /// Edges of the second reference (m).
+    pub(super) other_edge_m: f64,
+}
+
+impl Scene {
+    pub(super) fn plan(&self, quick: bool) -> &Plan {
+        if quick { &self.quick } else { &self.full }
+    }
+
+    /// Two references on fixed meshes, with the second-order step and everything solved well.
+    pub(super) fn references(&self, plan: &Plan) -> [Setting; 2] {
+        [plan.reference.edge_m, plan.other_edge_m].map(|edge_m| {
+            let level = Level { edge_m, ..plan.reference };
+            let well = [
+                "integrator=sdirk2",
+                "newton.max_iterations=30",
+                "newton.tolerance=1e-3",
+                "linear_solver=auto",
+                "linear_tolerance=1e-6",
+            ];
+            Setting::of(level, fixed_mesh(self.size_m, edge_m)).with("solved well", &well)
+        })
+    }
+}
+
+const fn level(edge_m: f64, substeps: usize) -> Level {
+    Level { edge_m, substeps }
+}
+
+const SDIRK2: &str = "integrator=sdirk2";
+const EULER: &str = "integrator=implicit-euler";
+
+/// All of them.
+pub(super) const SCENES: &[Scene] = &[
+    Scene {
+        name: "hang",
+        size_m: [1.0, 1.0],
+        coarsest_m: 0.25,
+        integrator: SDIRK2,
+        note: "It is followed down to the bottom of its first swing; later its folds are chaotic.",
+        quick: Plan {
+            frames: 8,
+            levels: &[level(0.2, 4), level(0.1, 8)],
+            reference: level(0.05, 16),
+            other_edge_m: 0.0588,
+        },
+        full: Plan {
+            frames: 15,
+            levels: &[level(1.0 / 6.0, 4), level(1.0 / 12.0, 8), level(1.0 / 24.0, 12)],
+            reference: level(1.0 / 48.0, 24),
+            other_edge_m: 1.0 / 43.0,
+        },
+    },
+    // Edges go into the 20 mm of the clamp a whole number of times, so that all clamp the same.
+    Scene {
+        name: "cantilever",
+        size_m: [0.12, 0.03],
+        coarsest_m: 0.02,
+        integrator: SDIRK2,
+        note: "It bends in a plane; nothing is chaotic.",
+        quick: Plan {
+            frames: 8,
+            levels: &[level(0.01, 4), level(0.005, 8)],
+            reference: level(0.0025, 16),
+            other_edge_m: 0.02 / 7.0,
+        },
+        full: Plan {
+            frames: 25,
+            levels: &[level(0.01, 4), level(0.005, 8), level(0.0025, 12)],
+            reference: level(0.02 / 14.0, 24),
+            other_edge_m: 0.02 / 12.0,
+        },
+    },
+    Scene {
+        name: "drape",
+        size_m: [1.0, 1.0],
+        coarsest_m: 0.25,
+        integrator: EULER,
+        note: "It is followed until it lies on the sphere; how its folds then buckle is chaotic.",
+        quick: Plan {
+            frames: 6,
+            levels: &[level(0.2, 4), level(0.1, 8)],
+            reference: level(0.0625, 12),
+            other_edge_m: 0.0714,
+        },
+        full: Plan {
+            frames: 12,
+            levels: &[level(1.0 / 8.0, 4), level(1.0 / 16.0, 8), level(1.0 / 24.0, 12)],
+            reference: level(1.0 / 40.0, 20),
+            other_edge_m: 1.0 / 36.0,
+        },
+    },
+    Scene {
+        name: "flag",
+        size_m: [3.0, 2.0],
+        coarsest_m: 0.5,
+        integrator: EULER,
+        note: "Flags are chaotic: only the first frames are compared, from rest, as no run can \
+               start from a state of the reference.",
+        quick: Plan {
+            frames: 5,
+            levels: &[level(0.5, 4), level(0.25, 8)],
+            reference: level(0.125, 12),
+            other_edge_m: 0.143,
+        },
+        full: Plan {
+            frames: 10,
+            levels: &[level(0.25, 4), level(0.125, 8), level(0.0833, 12)],
+            reference: level(0.05, 16),
+            other_edge_m: 0.0555,
+        },
+    },
+    Scene {
+        name: "sphere",
+        size_m: [1.0, 1.0],
+        coarsest_m: 0.25,
+        integrator: EULER,
+        note: "Cloth struck by a sphere is chaotic: only the first frames are compared, from rest, \
+               as no run can start from a state of the reference.",
+        quick: Plan {
+            frames: 6,
+            levels: &[level(0.2, 4), level(0.1, 8)],
+            reference: level(0.0625, 12),
+            other_edge_m: 0.0714,
+        },
+        full: Plan {
+            frames: 12,
+            levels: &[level(1.0 / 8.0, 4), level(1.0 / 16.0, 8), level(1.0 / 24.0, 12)],
+            reference: level(1.0 / 40.0, 20),
+            other_edge_m: 1.0 / 36.0,
+        },
+    },
+];
+
+#[cfg(test)]
+mod tests {
+    use super::super::settings::cells;
+    use super::*;
+
+    #[test]
+    fn references_are_finer_than_all_levels_and_differ() {
+        for scene in SCENES {
+            for plan in [&scene.quick, &scene.full] {
+                let finest = plan.levels.last().unwrap();
+                assert!(plan.levels.is_sorted_by(|a, b| a.edge_m > b.edge_m));
+                assert!(plan.reference.edge_m < plan.other_edge_m);
+                assert!(plan.other_edge_m < finest.edge_m, "{}", scene.name);
+                assert!(plan.reference.substeps > finest.substeps);
+                let [fine, other] = [plan.reference.edge_m, plan.other_edge_m];
+                assert_ne!(cells(scene.size_m, fine), cells(scene.size_m, other));
+            }
+        }
+    }
+
+    #[test]
+    fn every_scene_has_its_file() {
+        for scene in SCENES {
+            let file = format!("{}/../scenes/{}.json5", env!("CARGO_MANIFEST_DIR"), scene.name);
+            assert!(std::path::Path::new(&file).is_file(), "{file}");
+        }
+    }
+}
