@@ -169,6 +169,14 @@ fn run(root: &Path, arguments: &[String]) -> Result<(), Failure> {
     report.finish(around);
     report.complete = true;
     context.save(&report)?;
+    if let Some(folder) = &context.options.plots {
+        fs::create_dir_all(folder).map_err(|error| {
+            Failure::Unable(format!("cannot make {}: {error}", folder.display()))
+        })?;
+        for (name, svg) in html::files(&report) {
+            write(&folder.join(name), &svg)?;
+        }
+    }
     say(format!("\n{}", report.text()));
     if let Some(before) = &context.baseline {
         let changes = baseline::compare(before, &report);

@@ -12,6 +12,7 @@ pub(super) const HELP: &str = "  \
   --scene S     scene of the comparison of fixed and adaptive [default: scenes/flag.json5]
   --out DIR     folder of report.json, report.html and the recordings [default: target/bench]
   --baseline DIR  folder of an earlier report.json to compare with
+  --plots DIR   folder for every plot as an SVG file too
   --fresh       forget what a stopped run has measured
 ";
 
@@ -26,6 +27,7 @@ pub(super) struct Options {
     pub(super) scene: Option<PathBuf>,
     pub(super) out: Option<PathBuf>,
     pub(super) baseline: Option<PathBuf>,
+    pub(super) plots: Option<PathBuf>,
     pub(super) fresh: bool,
 }
 
@@ -63,6 +65,7 @@ impl Options {
                 "--runs" => options.runs = Some(count(argument, &value()?)?),
                 "--scene" => options.scene = Some(value()?.into()),
                 "--baseline" => options.baseline = Some(value()?.into()),
+                "--plots" => options.plots = Some(value()?.into()),
                 "--fresh" => options.fresh = true,
                 "--out" => options.out = Some(value()?.into()),
                 name if BENCHMARKS.iter().any(|b| b.name == name) => {
@@ -108,7 +111,7 @@ mod tests {
     #[test]
     fn only_what_figures_depend_on_matters() {
         let plain = parse("--runs 1").unwrap().that_matter();
-        let same = parse("flag --runs 1 --out a --baseline b --fresh").unwrap();
+        let same = parse("flag --runs 1 --out a --baseline b --plots c --fresh").unwrap();
         assert_eq!(same.that_matter(), plain);
         assert_eq!((same.baseline, same.fresh), (Some("b".into()), true));
         for other in ["--runs 2", "--runs 1 --quick", "--runs 1 --scene s"] {

@@ -45,10 +45,12 @@ pub(super) fn front(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     front
 }
 
-/// How y of one front compares with that of another at equal x: the geometric mean of the ratio where
-/// both have points to either side, on straight lines between the logarithms. `None` where they have
-/// no x in common.
+/// How y of one front compares with that of another at equal x: the geometric mean of the ratio. What
+/// reaches a small x also serves where a larger one would do, so that fronts go on to the right, and
+/// are compared from the first x that both reach to the last that either needs; on straight lines
+/// between the logarithms. `None` without points.
 pub(super) fn front_ratio(one: &[[f64; 2]], other: &[[f64; 2]]) -> Option<f64> {
+    const SAMPLES: usize = 64;
     let logs = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
         let positive: Vec<[f64; 2]> =
             points.iter().copied().filter(|[x, y]| *x > 0.0 && *y > 0.0).collect();
@@ -56,16 +58,15 @@ pub(super) fn front_ratio(one: &[[f64; 2]], other: &[[f64; 2]]) -> Option<f64> {
     };
     let (one, other) = (logs(one), logs(other));
     let low = one.first()?[0].max(other.first()?[0]);
-    let high = one.last()?[0].min(other.last()?[0]);
-    let at = |front: &[[f64; 2]], x: f64| {
-        let k = front.partition_point(|p| p[0] < x).clamp(1, front.len() - 1);
-        let ([x0, y0], [x1, y1]) = (front[k - 1], front[k]);
-        y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+    let high = one.last()?[0].max(other.last()?[0]);
+    let at = |front: &[[f64; 2]], x: f64| match front.partition_point(|p| p[0] < x) {
+        0 => front[0][1],
+        k if k == front.len() => front[k - 1][1],
+        k => {
+            let ([x0, y0], [x1, y1]) = (front[k - 1], front[k]);
+            y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+        }
     };
-    if low >= high {
-        return None;
-    }
-    const SAMPLES: usize = 64;
     let difference = |k: usize| {
         let x = low + (high - low) * (k as f64 + 0.5) / SAMPLES as f64;
         at(&one, x) - at(&other, x)
@@ -113,11 +114,15 @@ mod tests {
     #[test]
     fn fronts_are_compared_where_they_meet() {
         let one = [1e-3, 1e-2, 1e-1].map(|x: f64| [x, 1.0 / x]);
-        let other = [1e-4, 3e-2, 1.0].map(|x: f64| [x, 2.0 / x]);
+        let other = [1e-4, 3e-2, 1e-1].map(|x: f64| [x, 2.0 / x]);
         assert!((front_ratio(&one, &other).unwrap() - 0.5).abs() < 1e-12);
         assert!((front_ratio(&other, &one).unwrap() - 2.0).abs() < 1e-12);
-        assert_eq!(front_ratio(&one, &[[1.0, 1.0], [2.0, 0.5]]), None);
-        assert_eq!(front_ratio(&one, &one[..1]), None);
+        // One point serves for all larger errors: y = 10 against 100 and 10 on the way.
+        let single = front_ratio(&[[1e-3, 10.0]], &[[1e-2, 100.0], [1e-1, 10.0]]).unwrap();
+        assert!((single - 0.1f64.sqrt()).abs() < 1e-3, "{single}");
+        // Where neither needs more, the first common x counts.
+        let alone = front_ratio(&[[1.0, 1.0]], &[[1.0, 4.0]]).unwrap();
+        assert!((alone - 0.25).abs() < 1e-12);
         assert_eq!(front_ratio(&one, &[]), None);
     }
 }

@@ -88,19 +88,35 @@ fn section(out: &mut String, report: &Report, suite: &str) {
     }
 }
 
-/// All points, those with the same plot together.
-fn plots(out: &mut String, entries: &[&Entry]) {
-    let points = entries.iter().filter_map(|entry| match &entry.content {
-        Content::Points(points) => Some((entry.name.as_str(), points)),
-        _ => None,
-    });
+/// Series of points, those with the same plot together.
+fn plots_of<'a>(entries: impl Iterator<Item = &'a Entry>) -> Vec<Vec<(&'a str, &'a Points)>> {
     let mut plots: Vec<Vec<(&str, &Points)>> = Vec::new();
-    for one in points {
-        match plots.iter_mut().find(|plot| plot[0].1.plot == one.1.plot) {
+    for entry in entries {
+        let Content::Points(points) = &entry.content else { continue };
+        let one = (entry.name.as_str(), points);
+        match plots.iter_mut().find(|plot| plot[0].1.plot == points.plot) {
             Some(plot) => plot.push(one),
             None => plots.push(vec![one]),
         }
     }
+    plots
+}
+
+/// Every plot as an SVG of its own, with a name for its file.
+pub(super) fn files(report: &Report) -> Vec<(String, String)> {
+    let style = format!("<style>\n{}</style>\n", include_str!("page.css"));
+    let file = |series: Vec<(&str, &Points)>| {
+        // What the names of all its series begin with.
+        let name = series[0].0.rsplit_once('.').map_or(series[0].0, |(stem, _)| stem);
+        let svg = plot::plot(&series)?;
+        let (head, rest) = svg.split_once('\n')?;
+        Some((format!("{}.svg", name.replace('.', "_")), format!("{head}\n{style}{rest}")))
+    };
+    plots_of(report.entries.iter()).into_iter().filter_map(file).collect()
+}
+
+fn plots(out: &mut String, entries: &[&Entry]) {
+    let plots = plots_of(entries.iter().copied());
     if plots.is_empty() {
         return;
     }
@@ -257,6 +273,17 @@ mod tests {
             assert_eq!(unbalanced(&page), Vec::<String>::new());
             assert!(!page.contains("<script") && !page.contains("<link"));
             assert!(!page.contains("href") && !page.contains("url(") && !page.contains("@import"));
+        }
+    }
+
+    #[test]
+    fn plots_are_files_of_their_own() {
+        let files = files(&report());
+        let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["pareto_hang.svg", "g.svg"]);
+        for (_, svg) in files {
+            assert!(svg.starts_with("<svg xmlns=") && svg.contains("--ink"));
+            assert_eq!(unbalanced(&svg), Vec::<String>::new());
         }
     }
 

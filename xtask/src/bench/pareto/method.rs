@@ -9,20 +9,27 @@ pub(super) struct Method {
     pub(super) name: &'static str,
     /// Whether quick runs have it.
     pub(super) quick: bool,
-    /// The values that make its mesh, with shortest edges of the given length (m).
-    mesh: fn(&Scene, f64) -> Vec<String>,
+    /// Its meshes: a name, and the values that make it with shortest edges of a given length (m).
+    meshes: &'static [(&'static str, Mesh)],
     /// What it alone can vary: a name and values.
     knobs: &'static [(&'static str, &'static [&'static str])],
 }
 
+type Mesh = fn(&Scene, f64) -> Vec<String>;
+
 /// The first is what the others are compared with.
 pub(super) const METHODS: &[Method] = &[
-    Method { name: "fixed", quick: true, mesh: fixed, knobs: &[] },
-    Method { name: "adaptive", quick: true, mesh: adaptive, knobs: ADAPTIVE },
-    Method { name: "view", quick: false, mesh: view, knobs: &[] },
+    Method { name: "fixed", quick: true, meshes: &[("", fixed)], knobs: &[] },
+    Method {
+        name: "adaptive",
+        quick: true,
+        meshes: &[("", adaptive), ("longest edges twice the shortest", narrow)],
+        knobs: ADAPTIVE,
+    },
+    Method { name: "view", quick: false, meshes: &[("", view)], knobs: &[] },
 ];
 
-/// What every method varies, at the second of the levels: what a step is made of.
+/// What every method varies: what a step is made of.
 const EFFORT: &[(&str, &[&str])] = &[
     ("one Newton iteration", &["newton.max_iterations=1"]),
     ("loose linear solver", &["linear_solver=pcg", "linear_tolerance=1e-2"]),
@@ -41,22 +48,40 @@ const ADAPTIVE: &[(&str, &[&str])] = &[(
 )];
 
 impl Method {
-    /// All settings of a scene: the levels, and at the second of them one knob after the other.
+    /// All settings of a scene: the levels, and at some of them one knob after the other.
     pub(super) fn settings(&self, scene: &Scene, plan: &Plan) -> Vec<Setting> {
-        let at = |level: &Level| Setting::of(*level, (self.mesh)(scene, level.edge_m));
-        let mut settings: Vec<Setting> = plan.levels.iter().map(at).collect();
-        let Some(middle) = plan.levels.get(1) else { return settings };
-        let Level { edge_m, substeps } = *middle;
-        for substeps in [substeps / 2, 2 * substeps] {
-            settings.push(at(&Level { edge_m, substeps }));
+        let at = |level: &Level, (label, mesh): &(&str, Mesh)| {
+            let setting = Setting::of(*level, mesh(scene, level.edge_m));
+            setting.with("", &SMALL_PICTURE).with(label, &[])
+        };
+        let mut settings: Vec<Setting> = Vec::new();
+        // Where a scene bounds the longest edges, meshes may be the same.
+        let mut add = |setting: Setting| {
+            if settings.iter().all(|other| other.sets != setting.sets) {
+                settings.push(setting);
+            }
+        };
+        for mesh in self.meshes {
+            plan.levels.iter().for_each(|level| add(at(level, mesh)));
         }
-        let step = STEPS.iter().filter(|(_, sets)| sets[0] != scene.integrator);
-        for (label, sets) in EFFORT.iter().chain(step).chain(self.knobs) {
-            settings.push(at(middle).with(label, sets));
+        for (level, mesh) in
+            plan.knobs_at().iter().flat_map(|l| self.meshes.first().map(|m| (l, m)))
+        {
+            let Level { edge_m, substeps } = *level;
+            for substeps in [substeps / 2, 2 * substeps] {
+                add(at(&Level { edge_m, substeps }, mesh));
+            }
+            let step = STEPS.iter().filter(|(_, sets)| sets[0] != scene.integrator);
+            for (label, sets) in EFFORT.iter().chain(step).chain(self.knobs) {
+                add(at(level, mesh).with(label, sets));
+            }
         }
         settings
     }
 }
+
+/// A tenth of the default in each direction: drawing it must not be what is measured.
+const SMALL_PICTURE: [&str; 1] = ["camera.resolution=[128, 72]"];
 
 fn fixed(scene: &Scene, edge_m: f64) -> Vec<String> {
     fixed_mesh(scene.size_m, edge_m)
@@ -64,19 +89,29 @@ fn fixed(scene: &Scene, edge_m: f64) -> Vec<String> {
 
 /// Four times as long where nothing happens, as everywhere at the start.
 fn adaptive(scene: &Scene, edge_m: f64) -> Vec<String> {
-    let coarse = (4.0 * edge_m).min(scene.coarsest_m);
-    let [nx, ny] = cells(scene.size_m, coarse);
+    between(scene, edge_m, 4.0 * edge_m)
+}
+
+/// Only twice as long.
+fn narrow(scene: &Scene, edge_m: f64) -> Vec<String> {
+    between(scene, edge_m, 2.0 * edge_m)
+}
+
+fn between(scene: &Scene, edge_m: f64, coarse_m: f64) -> Vec<String> {
+    let coarse_m = coarse_m.min(scene.coarsest_m);
+    let [nx, ny] = cells(scene.size_m, coarse_m);
     let remeshing = format!(
-        "cloths[0].remeshing={{ size_m: {{ min: {edge_m}, max: {coarse} }}, refine_angle: 0.3, \
+        "cloths[0].remeshing={{ size_m: {{ min: {edge_m}, max: {coarse_m} }}, refine_angle: 0.3, \
          refine_velocity: 0.5, refine_compression: 0.005 }}"
     );
     vec![remeshing, format!("cloths[0].mesh.grid.cells=[{nx}, {ny}]")]
 }
 
-/// Adaptive, and by what the camera of the scene sees.
+/// Adaptive, and by what the camera of the scene sees. The smallest edges in pixels are those of the
+/// default in a picture of the default size.
 fn view(scene: &Scene, edge_m: f64) -> Vec<String> {
     let mut sets = adaptive(scene, edge_m);
-    sets.push("view={}".into());
+    sets.push("view={ size_min_px: 0.4 }".into());
     sets
 }
 

@@ -28,16 +28,18 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 const LATTICE: [usize; 2] = [25, 25];
 
 fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
-    let asked = context.options.scene.as_ref().map(|path| {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        SCENES.iter().find(|scene| scene.name == name).ok_or_else(|| {
-            let known: Vec<&str> = SCENES.iter().map(|scene| scene.name).collect();
-            Failure::Unable(format!("pareto has the scenes {}, not `{name}`", known.join(", ")))
-        })
-    });
-    let scenes: Vec<&Scene> = match asked {
-        Some(scene) => vec![scene?],
+    let scenes: Vec<&Scene> = match &context.options.scene {
         None => SCENES.iter().collect(),
+        Some(path) => {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            let scenes: Vec<&Scene> = SCENES.iter().filter(|scene| scene.name == name).collect();
+            if scenes.is_empty() {
+                let known: Vec<&str> = SCENES.iter().map(|scene| scene.name).collect();
+                let known = known.join(", ");
+                report.remark(&format!("`{name}` is none of the scenes of pareto: {known}."));
+            }
+            scenes
+        }
     };
     for scene in scenes {
         let part = format!("pareto/{}", scene.name);
@@ -213,10 +215,10 @@ fn compare(
     fixed: &[[f64; 2]],
 ) {
     let Some(ratio) = front_ratio(pairs, fixed) else {
-        return report.remark(&format!("{name} is left out: the fronts have no error in common."));
+        return report.remark(&format!("{name} is left out: no errors above zero."));
     };
-    let note = "CPU seconds over those on the fixed mesh at equal error: geometric mean along the \
-                part of the fronts that have errors in common. Below 1 the method pays.";
+    let note = "CPU seconds over those on the fixed mesh at equal error: geometric mean from \
+                the smallest error that both reach to the largest. Below 1 the method pays.";
     report.add(name, Figure::exact(ratio, "1", note));
     if ratio >= 1.0 {
         let told = number::short(ratio);

@@ -27,6 +27,15 @@ pub(super) struct Plan {
     pub(super) reference: Level,
     /// Edges of the second reference (m).
     pub(super) other_edge_m: f64,
+    /// How many of the levels, from the second on, have all knobs turned.
+    n_turned: usize,
+}
+
+impl Plan {
+    /// The levels at which all knobs are turned.
+    pub(super) fn knobs_at(&self) -> &[Level] {
+        &self.levels[1..][..self.n_turned]
+    }
 }
 
 impl Scene {
@@ -62,20 +71,22 @@ pub(super) const SCENES: &[Scene] = &[
     Scene {
         name: "hang",
         size_m: [1.0, 1.0],
-        coarsest_m: 0.25,
+        coarsest_m: 0.5,
         integrator: SDIRK2,
         note: "It is followed down to the bottom of its first swing; later its folds are chaotic.",
         quick: Plan {
             frames: 8,
-            levels: &[level(0.2, 4), level(0.1, 8)],
-            reference: level(0.05, 16),
-            other_edge_m: 0.0588,
+            levels: &[level(0.25, 4), level(0.125, 4), level(0.0625, 6)],
+            reference: level(1.0 / 28.0, 12),
+            other_edge_m: 0.04,
+            n_turned: 1,
         },
         full: Plan {
             frames: 15,
-            levels: &[level(1.0 / 6.0, 4), level(1.0 / 12.0, 8), level(1.0 / 24.0, 12)],
+            levels: &[level(1.0 / 8.0, 4), level(1.0 / 16.0, 6), level(1.0 / 32.0, 8)],
             reference: level(1.0 / 48.0, 24),
             other_edge_m: 1.0 / 43.0,
+            n_turned: 2,
         },
     },
     // Edges go into the 20 mm of the clamp a whole number of times, so that all clamp the same.
@@ -87,74 +98,82 @@ pub(super) const SCENES: &[Scene] = &[
         note: "It bends in a plane; nothing is chaotic.",
         quick: Plan {
             frames: 8,
-            levels: &[level(0.01, 4), level(0.005, 8)],
-            reference: level(0.0025, 16),
+            levels: &[level(0.01, 4), level(0.005, 6)],
+            reference: level(0.0025, 12),
             other_edge_m: 0.02 / 7.0,
+            n_turned: 1,
         },
         full: Plan {
             frames: 25,
             levels: &[level(0.01, 4), level(0.005, 8), level(0.0025, 12)],
             reference: level(0.02 / 14.0, 24),
             other_edge_m: 0.02 / 12.0,
+            n_turned: 2,
         },
     },
     Scene {
         name: "drape",
         size_m: [1.0, 1.0],
-        coarsest_m: 0.25,
+        coarsest_m: 0.5,
         integrator: EULER,
         note: "It is followed until it lies on the sphere; how its folds then buckle is chaotic.",
         quick: Plan {
             frames: 6,
-            levels: &[level(0.2, 4), level(0.1, 8)],
-            reference: level(0.0625, 12),
-            other_edge_m: 0.0714,
+            levels: &[level(0.25, 4), level(0.125, 6), level(1.0 / 12.0, 8)],
+            reference: level(0.05, 12),
+            other_edge_m: 1.0 / 18.0,
+            n_turned: 1,
         },
         full: Plan {
             frames: 12,
             levels: &[level(1.0 / 8.0, 4), level(1.0 / 16.0, 8), level(1.0 / 24.0, 12)],
             reference: level(1.0 / 40.0, 20),
             other_edge_m: 1.0 / 36.0,
+            n_turned: 2,
         },
     },
     Scene {
         name: "flag",
         size_m: [3.0, 2.0],
-        coarsest_m: 0.5,
+        coarsest_m: 1.0,
         integrator: EULER,
         note: "Flags are chaotic: only the first frames are compared, from rest, as no run can \
                start from a state of the reference.",
         quick: Plan {
             frames: 5,
-            levels: &[level(0.5, 4), level(0.25, 8)],
-            reference: level(0.125, 12),
-            other_edge_m: 0.143,
+            levels: &[level(0.5, 4), level(0.25, 6), level(1.0 / 6.0, 8)],
+            reference: level(0.1, 12),
+            other_edge_m: 1.0 / 9.0,
+            n_turned: 1,
         },
         full: Plan {
             frames: 10,
             levels: &[level(0.25, 4), level(0.125, 8), level(0.0833, 12)],
             reference: level(0.05, 16),
             other_edge_m: 0.0555,
+            n_turned: 2,
         },
     },
     Scene {
         name: "sphere",
         size_m: [1.0, 1.0],
-        coarsest_m: 0.25,
+        coarsest_m: 0.5,
         integrator: EULER,
         note: "Cloth struck by a sphere is chaotic: only the first frames are compared, from rest, \
                as no run can start from a state of the reference.",
         quick: Plan {
             frames: 6,
-            levels: &[level(0.2, 4), level(0.1, 8)],
-            reference: level(0.0625, 12),
-            other_edge_m: 0.0714,
+            levels: &[level(0.25, 4), level(0.125, 6), level(1.0 / 12.0, 8)],
+            reference: level(0.05, 12),
+            other_edge_m: 1.0 / 18.0,
+            n_turned: 1,
         },
         full: Plan {
             frames: 12,
             levels: &[level(1.0 / 8.0, 4), level(1.0 / 16.0, 8), level(1.0 / 24.0, 12)],
             reference: level(1.0 / 40.0, 20),
             other_edge_m: 1.0 / 36.0,
+            n_turned: 2,
         },
     },
 ];

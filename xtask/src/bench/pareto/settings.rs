@@ -28,9 +28,11 @@ impl Setting {
         Setting { label: format!("{mm} mm, {substeps} steps"), sets }
     }
 
-    /// The same with other values.
+    /// The same with other values; what needs no telling has no label.
     pub(super) fn with(mut self, label: &str, sets: &[&str]) -> Setting {
-        self.label = format!("{}, {label}", self.label);
+        if !label.is_empty() {
+            self.label = format!("{}, {label}", self.label);
+        }
         self.sets.extend(sets.iter().map(|set| (*set).to_owned()));
         self
     }
