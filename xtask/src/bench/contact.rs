@@ -49,13 +49,14 @@ fn scene(context: &Context, report: &mut Report, name: &str) -> Result<(), Failu
     let crossings = info.sum("/crossings");
     say(format!("  {:.2} CPU seconds, {crossings} crossings", run.cpu_s));
     report.add(&figure("intersections"), Figure::exact(crossings, "1", &note));
-    report.add(&figure("cpu_s_per_frame"), Figure::exact(run.cpu_s / frames as f64, "s", &note));
+    report
+        .add(&figure("cpu_s_per_frame"), Figure::median(&[run.cpu_s / frames as f64], "s", &note));
     let what = "Peak of resident memory of the process.";
     let peak = run.peak_mb.and_then(|mb| Figure::exact(mb, "MB", what));
     report.add(&figure("peak_mb"), peak);
     let share = info.sum("/seconds/contact") / info.sum("/seconds/total");
     let what = "Share of the frames' time that finding contacts and keeping ways free takes.";
-    report.add(&figure("share"), Figure::exact(share, "1", what));
+    report.add(&figure("share"), Figure::median(&[share], "1", what));
     Ok(())
 }
 
@@ -114,13 +115,13 @@ fn growth(context: &Context, report: &mut Report) -> Result<(), Failure> {
         say(format!("  {seconds:.4} s of contact a step"));
         report.add(
             &format!("contact.scaling.{triangles}.s_per_step"),
-            Figure::exact(seconds, "s", "Wall time of contact in a step, one thread."),
+            Figure::median(&[seconds], "s", "Wall time of contact in a step, one thread."),
         );
         points.push((triangles, seconds));
     }
     let note = "Slope of the logarithm of the time against that of the number of triangles, least squares.";
     let pairs: Vec<[f64; 2]> = points.iter().map(|&(x, y)| [x, y]).collect();
-    let exponent = power_law(&pairs).and_then(|(power, _)| Figure::exact(power, "1", note));
+    let exponent = power_law(&pairs).and_then(|(power, _)| Figure::median(&[power], "1", note));
     report.add("contact.scaling.exponent", exponent);
     let axes = ["triangles", "contact in a step"];
     let note = "A sheet on a sphere; wall time, one thread.";

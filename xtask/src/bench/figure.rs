@@ -33,7 +33,8 @@ pub(super) struct Figure {
 }
 
 impl Figure {
-    /// The median of repeated measurements; `None` if there are none.
+    /// The median of repeated measurements, also of a single one of what varies from run to run;
+    /// `None` if there are none.
     pub(super) fn median(values: &[f64], unit: &'static str, note: &str) -> Option<Figure> {
         Figure::made(Of::Runs, median(values), values, unit, note)
     }
@@ -43,7 +44,7 @@ impl Figure {
         Figure::made(Of::Things, mean(values), values, unit, note)
     }
 
-    /// A number that every repetition would give again.
+    /// A number that every repetition would give again: no times, nor what is made of times.
     pub(super) fn exact(value: f64, unit: &'static str, note: &str) -> Option<Figure> {
         Figure::made(Of::Once, Some(value), &[value], unit, note)
     }

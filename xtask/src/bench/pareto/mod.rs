@@ -184,18 +184,20 @@ fn tell(
     );
     report.add(&name("floor"), Figure::exact(floor, "m", &note));
     let whole = "The reference, run once.";
-    report.add(&name("reference.cpu_s"), Figure::exact(cost.cpu_s, "s", whole));
+    report.add(&name("reference.cpu_s"), Figure::median(&[cost.cpu_s], "s", whole));
     let peak = cost.peak_mb.and_then(|mb| Figure::exact(mb, "MB", "Peak of resident memory."));
     report.add(&name("reference.peak_mb"), peak);
 
-    let mut first: Option<Vec<[f64; 2]>> = None;
+    let mut first: Option<Fronts> = None;
     for method in METHODS {
-        let points: Vec<Point> =
-            candidates.iter().filter(|c| c.method.name == method.name).filter_map(point).collect();
+        let ours = || candidates.iter().filter(|c| c.method.name == method.name);
+        let points: Vec<Point> = ours().filter_map(point).collect();
         if points.is_empty() {
             continue;
         }
-        let pairs: Vec<[f64; 2]> = points.iter().map(|p| [p.x, p.y]).collect();
+        // The points of each repetition.
+        let run = |k: usize| ours().filter_map(move |c| Some([c.error, c.measured.get(k)?.cpu_s]));
+        let pairs: Fronts = (0..points[0].n).map(|k| run(k).collect()).collect();
         report.points(&name(method.name), Points::errors(scene.name, points, floor, &note));
         let Some(fixed) = &first else {
             first = Some(pairs);
@@ -206,20 +208,19 @@ fn tell(
     report.table_of(&name("runs"), table(candidates, &note));
 }
 
+/// Points (error, CPU seconds) of every repetition.
+type Fronts = Vec<Vec<[f64; 2]>>;
+
 /// How the front of a method lies to that of the fixed mesh.
-fn compare(
-    report: &mut Report,
-    name: &str,
-    method: &Method,
-    pairs: &[[f64; 2]],
-    fixed: &[[f64; 2]],
-) {
-    let Some(ratio) = front_ratio(pairs, fixed) else {
+fn compare(report: &mut Report, name: &str, method: &Method, ours: &Fronts, fixed: &Fronts) {
+    let ratios: Vec<f64> =
+        ours.iter().zip(fixed).filter_map(|(ours, fixed)| front_ratio(ours, fixed)).collect();
+    let Some(ratio) = median(&ratios) else {
         return report.remark(&format!("{name} is left out: no errors above zero."));
     };
     let note = "CPU seconds over those on the fixed mesh at equal error: geometric mean from \
                 the smallest error that both reach to the largest. Below 1 the method pays.";
-    report.add(name, Figure::exact(ratio, "1", note));
+    report.add(name, Figure::median(&ratios, "1", note));
     if ratio >= 1.0 {
         let told = number::short(ratio);
         report.remark(&format!(

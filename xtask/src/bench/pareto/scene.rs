@@ -83,9 +83,14 @@ pub(super) const SCENES: &[Scene] = &[
         },
         full: Plan {
             frames: 15,
-            levels: &[level(1.0 / 8.0, 4), level(1.0 / 16.0, 6), level(1.0 / 32.0, 8)],
-            reference: level(1.0 / 48.0, 24),
-            other_edge_m: 1.0 / 43.0,
+            levels: &[
+                level(1.0 / 8.0, 4),
+                level(1.0 / 16.0, 6),
+                level(1.0 / 32.0, 8),
+                level(1.0 / 48.0, 8),
+            ],
+            reference: level(1.0 / 72.0, 16),
+            other_edge_m: 1.0 / 64.0,
             n_turned: 2,
         },
     },
