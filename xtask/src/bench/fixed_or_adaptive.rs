@@ -5,6 +5,7 @@ use super::Context;
 use super::figure::Figure;
 use super::program::{Measured, Simulation};
 use super::report::Report;
+use super::stages;
 use super::surface::{Surface, lattice};
 use crate::command::{Failure, say};
 use std::fs;
@@ -157,14 +158,7 @@ fn times(report: &mut Report, name: &str, v: &Variant<'_>) {
     let note = "Peak of resident memory of the process; median of the runs.";
     let peaks: Vec<f64> = v.measured.iter().filter_map(|m| m.peak_mb).collect();
     report.add(&format!("{name}.peak_mb.{}", v.name), Figure::median(&peaks, "MB", note));
-    for stage in info.stages() {
-        let pointer = format!("/seconds/{stage}");
-        let values: Vec<f64> = v.measured.iter().map(|m| m.info.mean(&pointer)).collect();
-        let note = "Wall seconds a frame, longer than CPU seconds on a machine that others use; \
-                    median of the runs.";
-        let figure = Figure::median(&values, "s", note);
-        report.add(&format!("{name}.stage_s.{stage}.{}", v.name), figure);
-    }
+    stages::add(report, name, v.name, &v.measured);
 }
 
 fn faces(report: &mut Report, name: &str, [adaptive, fixed, reference]: [&Variant<'_>; 3]) {

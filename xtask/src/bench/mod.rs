@@ -23,6 +23,7 @@ mod program;
 mod provenance;
 mod report;
 mod run_info;
+mod stages;
 mod statistics;
 mod surface;
 mod table;
@@ -78,7 +79,12 @@ impl Context {
     fn save(&self, report: &Report) -> Result<(), Failure> {
         let changes = self.baseline.as_ref().map(|before| baseline::compare(before, report));
         write(&self.out.join("report.json"), &report.json())?;
-        write(&self.out.join("report.html"), &html::page(report, changes.as_ref()))
+        write(&self.out.join("report.html"), &html::page(report, changes.as_ref()))?;
+        let Some(folder) = &self.options.plots else { return Ok(()) };
+        fs::create_dir_all(folder).map_err(|error| {
+            Failure::Unable(format!("cannot make {}: {error}", folder.display()))
+        })?;
+        html::files(report).iter().try_for_each(|(name, svg)| write(&folder.join(name), svg))
     }
 
     /// Measures a part of a suite, named `suite/part`, unless a run that was stopped has it.
@@ -169,14 +175,6 @@ fn run(root: &Path, arguments: &[String]) -> Result<(), Failure> {
     report.finish(around);
     report.complete = true;
     context.save(&report)?;
-    if let Some(folder) = &context.options.plots {
-        fs::create_dir_all(folder).map_err(|error| {
-            Failure::Unable(format!("cannot make {}: {error}", folder.display()))
-        })?;
-        for (name, svg) in html::files(&report) {
-            write(&folder.join(name), &svg)?;
-        }
-    }
     say(format!("\n{}", report.text()));
     if let Some(before) = &context.baseline {
         let changes = baseline::compare(before, &report);

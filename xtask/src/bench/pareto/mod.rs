@@ -11,7 +11,7 @@ use super::report::Report;
 use super::statistics::{front_ratio, mean, median, spread};
 use super::surface::{Surface, World, lattice, rms};
 use super::table::{Cell, Table, Tone};
-use super::{Benchmark, Context, number};
+use super::{Benchmark, Context, number, stages};
 use crate::command::{Failure, say};
 use method::{METHODS, Method};
 use scene::{Plan, SCENES, Scene};
@@ -194,6 +194,10 @@ fn tell(
         let points: Vec<Point> = ours().filter_map(point).collect();
         if points.is_empty() {
             continue;
+        }
+        // The finest of the levels: the last of them, before the knobs.
+        if let Some(finest) = ours().nth(plan.levels.len() - 1) {
+            stages::add(report, &format!("pareto.{}", scene.name), method.name, &finest.measured);
         }
         // The points of each repetition.
         let run = |k: usize| ours().filter_map(move |c| Some([c.error, c.measured.get(k)?.cpu_s]));
