@@ -9,8 +9,9 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Adds a figure `kernels.…` for every estimate that criterion left below Cargo's target folder.
 pub(super) fn take(report: &mut Report, root: &Path) {
-    let target = std::env::var_os("CARGO_TARGET_DIR").map(PathBuf::from);
-    let folder = target.unwrap_or_else(|| root.join("target")).join("criterion");
+    let named = |variable: &str| std::env::var_os(variable).map(PathBuf::from);
+    let target = named("CARGO_TARGET_DIR").unwrap_or_else(|| root.join("target"));
+    let folder = named("CRITERION_HOME").unwrap_or_else(|| target.join("criterion"));
     let mut found = Vec::new();
     collect(&folder, &mut found);
     found.sort();

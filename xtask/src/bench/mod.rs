@@ -22,6 +22,7 @@ mod points;
 mod program;
 mod provenance;
 mod report;
+mod resume;
 mod run_info;
 mod stages;
 mod statistics;
@@ -95,7 +96,7 @@ impl Context {
         measure: impl FnOnce(&mut Report) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         if report.is_finished(name) {
-            say(format!("{name}: kept from the run that was stopped"));
+            say(format!("{name}: kept from a run that was stopped; --fresh measures it again"));
             return Ok(());
         }
         say(format!("\n{name}"));
@@ -105,24 +106,13 @@ impl Context {
         self.save(report)
     }
 
-    /// The report to begin with: what an earlier run in the same folder has measured under the same
-    /// circumstances, without what is to be measured again.
+    /// The report to begin with; `chosen` are the suites asked for.
     fn start(&self, chosen: &[&Benchmark]) -> Report {
         let provenance = Provenance::here(&self.root, self.options.that_matter());
         let earlier = fs::read_to_string(self.out.join("report.json"));
         let earlier = earlier.ok().and_then(|text| Report::read(&text).ok());
-        let same = |report: &Report| report.provenance.is_same(&provenance);
-        let Some(mut report) = earlier.filter(|r| !self.options.fresh && same(r)) else {
-            return Report::new(provenance);
-        };
-        if report.complete {
-            // A new run of what was finished is a new measurement; other suites stay.
-            chosen.iter().for_each(|suite| report.forget_suite(suite.name));
-        } else {
-            say("going on with a run that was stopped; --fresh starts over");
-        }
-        report.complete = false;
-        report
+        let suites: Vec<&str> = chosen.iter().map(|suite| suite.name).collect();
+        resume::start(earlier, provenance, &suites, self.options.fresh)
     }
 }
 
@@ -173,7 +163,7 @@ fn run(root: &Path, arguments: &[String]) -> Result<(), Failure> {
     let around = report.begin(KERNELS);
     kernels::take(&mut report, root);
     report.finish(around);
-    report.complete = true;
+    report.complete = report.all_is_finished();
     context.save(&report)?;
     say(format!("\n{}", report.text()));
     if let Some(before) = &context.baseline {

@@ -37,10 +37,15 @@ pub(super) struct Report {
     pub(super) remarks: Vec<(String, String)>,
     /// Parts that were measured to their end.
     finished: Vec<String>,
-    /// True if everything asked for was measured.
+    /// True if every suite that is in it was measured to its end.
     pub(super) complete: bool,
     /// The part that is being measured.
     part: String,
+}
+
+/// The suite that a part is of.
+pub(super) fn suite_of(part: &str) -> &str {
+    part.split('/').next().unwrap_or(part)
 }
 
 impl Report {
@@ -83,6 +88,12 @@ impl Report {
         self.finished.iter().any(|p| p == part)
     }
 
+    /// True if every suite of which something is here was measured to its end.
+    pub(super) fn all_is_finished(&self) -> bool {
+        let parts = self.entries.iter().map(|e| &e.part).chain(&self.finished);
+        parts.map(|part| suite_of(part)).all(|suite| self.is_finished(suite))
+    }
+
     /// What follows belongs to this part; what a stopped run left of it goes. The return value is
     /// the part around it.
     pub(super) fn begin(&mut self, part: &str) -> String {
@@ -97,7 +108,7 @@ impl Report {
 
     /// Forgets a suite and its parts.
     pub(super) fn forget_suite(&mut self, suite: &str) {
-        self.forget(|part| part.split('/').next() == Some(suite));
+        self.forget(|part| suite_of(part) == suite);
     }
 
     fn forget(&mut self, gone: impl Fn(&str) -> bool) {

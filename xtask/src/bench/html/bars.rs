@@ -1,7 +1,7 @@
 //! Bars of the shares of time that stages take.
 
 use super::super::number::short;
-use super::super::report::Report;
+use super::super::report::{Report, suite_of};
 use super::markup::{Svg, colour};
 use std::collections::BTreeMap;
 
@@ -23,7 +23,7 @@ pub(super) fn bars(report: &Report, suite: &str) -> Vec<(String, String)> {
     let mut scenes: BTreeMap<String, BTreeMap<String, Bar>> = BTreeMap::new();
     let of_suite = |name: &&str| {
         let entry = report.entries.iter().find(|e| e.name == **name);
-        entry.is_some_and(|e| e.part.split('/').next() == Some(suite))
+        entry.is_some_and(|e| suite_of(&e.part) == suite)
     };
     for (name, figure) in report.figures().filter(|(name, _)| of_suite(name)) {
         let Some((scene, rest)) = name.split_once(".stage_s.") else { continue };

@@ -7,7 +7,7 @@ mod plot;
 
 use super::number::short;
 use super::points::{Points, Shape};
-use super::report::{Content, Entry, Report};
+use super::report::{Content, Entry, Report, suite_of};
 use super::table::{Table, Tone};
 use markup::escape;
 use std::fmt::Write;
@@ -53,10 +53,6 @@ fn suites(report: &Report) -> Vec<&str> {
         }
     }
     suites
-}
-
-fn suite_of(part: &str) -> &str {
-    part.split('/').next().unwrap_or(part)
 }
 
 fn section(out: &mut String, report: &Report, suite: &str) {
