@@ -58,6 +58,8 @@ struct Candidate {
     measured: Vec<Measured>,
     /// Mean over the frames of the RMS distance from the reference (m).
     error: f64,
+    /// RMS difference of the kinetic energies from those of the reference, over their RMS (1).
+    energy_error: f64,
     /// Why it could not be run.
     failure: Option<String>,
 }
@@ -81,6 +83,7 @@ fn sweep(context: &Context, report: &mut Report, scene: &Scene) -> Result<(), Fa
             setting,
             measured: Vec::new(),
             error: f64::NAN,
+            energy_error: f64::NAN,
             failure: None,
         })
         .collect();
@@ -89,6 +92,7 @@ fn sweep(context: &Context, report: &mut Report, scene: &Scene) -> Result<(), Fa
         match follow(context, scene, plan, method.name, setting, &points) {
             Ok((path, measured)) => {
                 candidate.error = distance(&path, &truth);
+                candidate.energy_error = energy_error(&measured, &cost);
                 candidate.measured.push(measured);
                 say(format!("    error {} m", number::short(candidate.error)));
             }
@@ -158,6 +162,13 @@ fn follow(
 fn distance(one: &Path, other: &Path) -> f64 {
     let each: Vec<f64> = one.iter().zip(other).map(|(a, b)| rms(a, b)).collect();
     mean(&each).unwrap_or(f64::NAN)
+}
+
+/// How far the kinetic energies of the frames are from those of the reference, RMS over RMS.
+fn energy_error(run: &Measured, reference: &Measured) -> f64 {
+    let [run, truth] = [run, reference].map(|m| m.info.each("/kinetic_energy_j"));
+    let square: f64 = run.iter().zip(&truth).map(|(a, b)| (a - b).powi(2)).sum();
+    (square / truth.iter().map(|b| b * b).sum::<f64>()).sqrt()
 }
 
 /// Adds what was found.
@@ -242,8 +253,16 @@ fn point(candidate: &Candidate) -> Option<Point> {
 }
 
 fn table(candidates: &[Candidate], note: &str) -> Table {
-    let columns =
-        ["method", "settings", "RMS error (m)", "CPU (s)", "faces", "peak (MB)", "unconverged"];
+    let columns = [
+        "method",
+        "settings",
+        "RMS error (m)",
+        "kinetic energy error",
+        "CPU (s)",
+        "faces",
+        "peak (MB)",
+        "unconverged",
+    ];
     let row = |c: &Candidate| {
         let mut row = vec![Cell::plain(c.method.name), Cell::plain(&c.setting.label)];
         let (Some(point), Some(run)) = (point(c), c.measured.first()) else {
@@ -254,6 +273,7 @@ fn table(candidates: &[Candidate], note: &str) -> Table {
         let (unconverged, stages) = (run.info.sum("/unconverged_stages"), run.info.sum("/stages"));
         row.extend([
             Cell::plain(number::short(point.x)),
+            Cell::plain(number::short(c.energy_error)),
             Cell::plain(number::short(point.y)),
             Cell::plain(format!("{:.0}", run.info.mean("/faces"))),
             Cell::plain(run.peak_mb.map_or(String::new(), number::short)),
