@@ -7,7 +7,7 @@ use std::path::PathBuf;
 /// What help says of the options.
 pub(super) const HELP: &str = "  \
   --quick       few frames, each run once: shows that it works, and roughly what it costs
-  --frames N    frames of each run [default: 20; 6 with --quick]
+  --frames N    frames of each run, where a suite has none of its own [default: 20; 6 with --quick]
   --runs N      how often each run is repeated [default: 3; 1 with --quick]
   --scene S     scene of the suite flag [default: scenes/flag.json5], and the only one of pareto
   --out DIR     folder of report.json, report.html and the recordings [default: target/bench]

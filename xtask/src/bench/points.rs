@@ -97,7 +97,10 @@ impl Points {
             let text = |k: usize| Some(json[key].get(k)?.as_str()?.to_owned());
             Some([text(0)?, text(1)?])
         };
-        let pair = |v: &Value| -> Option<[f64; 2]> { Some([v[0].as_f64()?, v[1].as_f64()?]) };
+        // JSON has no NaN and no infinity: they were written as null.
+        let number = |v: &Value| if v.is_null() { Some(f64::NAN) } else { v.as_f64() };
+        let pair =
+            |v: &Value| -> Option<[f64; 2]> { Some([number(v.get(0)?)?, number(v.get(1)?)?]) };
         let point = |(k, value): (usize, &Value)| {
             let [x, y] = pair(value)?;
             let label = json["labels"].get(k)?.as_str()?.to_owned();
@@ -137,5 +140,7 @@ mod tests {
             assert_eq!(Points::read(&serde_json::from_str(&text).unwrap()), Some(points));
         }
         assert_eq!(Points::read(&json!({ "value": [[1, 2]] })), None);
+        let broken = Points::growth("g", ["a", "b"], ["1", "s"], &[(1.0, f64::NAN)], "").json();
+        assert!(Points::read(&broken).unwrap().points[0].y.is_nan());
     }
 }
