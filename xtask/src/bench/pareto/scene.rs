@@ -121,7 +121,7 @@ pub(super) const SCENES: &[Scene] = &[
         size_m: [1.0, 1.0],
         coarsest_m: 0.5,
         integrator: EULER,
-        note: "It is followed until it lies on the sphere; how its folds then buckle is chaotic.",
+        note: "It is followed until it bends over the sphere; how its folds then buckle is chaotic.",
         quick: Plan {
             frames: 6,
             levels: &[level(0.25, 4), level(0.125, 6), level(1.0 / 12.0, 8)],
@@ -130,7 +130,7 @@ pub(super) const SCENES: &[Scene] = &[
             n_turned: 1,
         },
         full: Plan {
-            frames: 12,
+            frames: 7,
             levels: &[level(1.0 / 8.0, 4), level(1.0 / 16.0, 8), level(1.0 / 24.0, 12)],
             reference: level(1.0 / 40.0, 20),
             other_edge_m: 1.0 / 36.0,
