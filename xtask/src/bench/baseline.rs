@@ -111,6 +111,8 @@ fn numbers(report: &Report) -> Vec<(String, Figure)> {
     let mut all = Vec::new();
     for entry in &report.entries {
         match &entry.content {
+            // Wall seconds, which other load makes longer without bound.
+            Content::Figure(_) if entry.name.contains(".stage_s.") => {}
             Content::Figure(figure) => all.push((entry.name.clone(), figure.clone())),
             Content::Points(points) => {
                 for (k, p) in points.points.iter().enumerate() {
@@ -227,7 +229,8 @@ mod tests {
             let mut report = Report::new(Provenance::default());
             let point = Point { x, y, spread: [y, y], n: 1, label: label.into() };
             report.points("pareto.a.fixed", Points::errors("a", vec![point], 0.0, ""));
-            report.add("a.cpu_s", Figure::exact(1.0, "s", ""));
+            report.add("a.cpu_s", Figure::median(&[1.0], "s", ""));
+            report.add("a.stage_s.linear.fixed", Figure::median(&[1e3 * x * x], "s", ""));
             report
         };
         let before = report(0.1, 1.0, "h 1/8");
