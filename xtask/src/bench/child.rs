@@ -4,7 +4,7 @@ use super::cpu_time;
 use crate::command::Failure;
 use std::fs;
 use std::process::{Command, ExitStatus};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// How often the memory is looked at. Linux keeps the peak itself, so that only what is added in the
 /// last moments can be missed.
@@ -13,31 +13,38 @@ const LOOK: Duration = Duration::from_millis(4);
 /// What a child took.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ended {
-    pub(super) status: ExitStatus,
+    /// `None` if it was ended at the limit.
+    pub(super) status: Option<ExitStatus>,
     /// User and system time (s).
     pub(super) cpu_s: f64,
     /// Peak of resident memory (MB = 10⁶ bytes), where Linux tells it.
     pub(super) peak_mb: Option<f64>,
 }
 
-/// Runs a command to its end. No other child may end meanwhile.
+/// Runs a command to its end, or until it has taken as long as a limit. No other child may end
+/// meanwhile.
 ///
 /// # Errors
 /// If it cannot be started.
-pub(super) fn run(command: &mut Command) -> Result<Ended, Failure> {
+pub(super) fn run(command: &mut Command, limit: Option<Duration>) -> Result<Ended, Failure> {
     let program = command.get_program().to_string_lossy().into_owned();
     let told = |error| Failure::Unable(format!("cannot start {program}: {error}"));
     let before = cpu_time::of_children()?;
     let mut child = command.spawn().map_err(told)?;
     let status = format!("/proc/{}/status", child.id());
+    let clock = Instant::now();
+    let cannot_wait = |error| Failure::Unable(format!("cannot wait: {error}"));
     let mut peak_mb = None;
     let ended = loop {
         peak_mb = fs::read_to_string(&status).ok().and_then(|text| peak(&text)).or(peak_mb);
-        match child.try_wait() {
-            Ok(Some(ended)) => break ended,
-            Ok(None) => std::thread::sleep(LOOK),
-            Err(error) => return Err(Failure::Unable(format!("cannot wait: {error}"))),
+        if let Some(ended) = child.try_wait().map_err(cannot_wait)? {
+            break Some(ended);
         }
+        if limit.is_some_and(|limit| clock.elapsed() > limit) {
+            child.kill().and_then(|()| child.wait()).map_err(cannot_wait)?;
+            break None;
+        }
+        std::thread::sleep(LOOK);
     };
     Ok(Ended { status: ended, cpu_s: cpu_time::of_children()? - before, peak_mb })
 }
@@ -66,11 +73,18 @@ mod tests {
         // Long enough to be looked at, with a string of 2²⁴ letters.
         let script =
             "x=x; i=0; while [ $i -lt 24 ]; do x=$x$x; i=$((i+1)); done; sleep 0.3; exit 3";
-        let ended = run(Command::new("sh").args(["-c", script])).unwrap();
-        assert_eq!(ended.status.code(), Some(3));
+        let ended = run(Command::new("sh").args(["-c", script]), None).unwrap();
+        assert_eq!(ended.status.unwrap().code(), Some(3));
         assert!(ended.peak_mb.unwrap() > 16.0, "{ended:?}");
-        assert!(
-            matches!(run(&mut Command::new("/no/such")), Err(Failure::Unable(w)) if w.contains("/no/such"))
-        );
+        let missing = run(&mut Command::new("/no/such"), None);
+        assert!(matches!(missing, Err(Failure::Unable(why)) if why.contains("/no/such")));
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_child_without_end_is_ended() {
+        let limit = Some(Duration::from_millis(50));
+        let ended = run(Command::new("sleep").arg("1000"), limit).unwrap();
+        assert!(ended.status.is_none());
     }
 }

@@ -70,9 +70,10 @@ impl Program {
             command.args(["--set", set]);
         });
         // Standard error is the user's: progress, warnings, what failed.
-        let child::Ended { status, cpu_s, peak_mb } = child::run(command.stdout(Stdio::null()))?;
-        if !status.success() {
-            let scene = scene.display();
+        let ended = child::run(command.stdout(Stdio::null()), None)?;
+        let child::Ended { status, cpu_s, peak_mb } = ended;
+        if !status.is_some_and(|status| status.success()) {
+            let (scene, status) = (scene.display(), status.unwrap_or_default());
             return Err(Failure::Unable(format!("the simulation of {scene} failed ({status})")));
         }
         let info = self.output(Command::new(&self.path).arg("info").arg(out).arg("--json"))?;

@@ -1,6 +1,6 @@
 //! What benchmarks found: figures, points and tables by name, as JSON and as text.
 
-use super::figure::Figure;
+pub(super) use super::figure::Figure;
 use super::number::short;
 use super::points::Points;
 use super::provenance::Provenance;
