@@ -14,6 +14,7 @@ mod options;
 mod program;
 mod report;
 mod run_info;
+mod stability;
 mod statistics;
 mod surface;
 mod told_by_tests;
@@ -43,7 +44,7 @@ struct Benchmark {
 }
 
 /// All benchmarks, in the order in which they run.
-const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK, contact::BENCHMARK];
+const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK, contact::BENCHMARK, stability::BENCHMARK];
 
 /// What a benchmark works with.
 struct Context {
@@ -71,7 +72,7 @@ impl Context {
 
 fn help() -> String {
     let list: String =
-        BENCHMARKS.iter().map(|b| format!("  {:8}{}\n", b.name, b.summary)).collect();
+        BENCHMARKS.iter().map(|b| format!("  {:10}{}\n", b.name, b.summary)).collect();
     format!(
         "Usage: cargo xtask bench [NAME]… [OPTIONS]\n\nBenchmarks, all unless named:\n{list}\n\
          Options:\n{}\n\

@@ -5,8 +5,11 @@ use super::run_info::RunInfo;
 use crate::command::Failure;
 use serde_json::Value;
 use std::fmt::Display;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
 
 /// The `organza` binary.
 #[derive(Clone, Debug)]
@@ -31,6 +34,16 @@ pub(super) struct Measured {
     /// CPU time of the whole process, from reading the scene to drawing the last frame (s).
     pub(super) cpu_s: f64,
     pub(super) info: RunInfo,
+}
+
+/// How a simulation ended that may fail.
+#[derive(Clone, Debug)]
+pub(super) enum Attempt {
+    Done(Measured),
+    /// The error that the program ended with.
+    Refused(String),
+    Crashed(String),
+    TooLong,
 }
 
 impl Program {
@@ -59,6 +72,55 @@ impl Program {
     /// # Errors
     /// If the run fails, or says something that is not understood.
     pub(super) fn simulate(&self, simulation: &Simulation) -> Result<Measured, Failure> {
+        let before = cpu_time::of_children()?;
+        // Standard error is the user's: progress, warnings, what failed.
+        let status = self.command(simulation).status().map_err(self.cannot_start())?;
+        let cpu_s = cpu_time::of_children()? - before;
+        if !status.success() {
+            let scene = simulation.scene.display();
+            return Err(Failure::Unable(format!("the simulation of {scene} failed ({status})")));
+        }
+        Ok(Measured { cpu_s, info: self.info(simulation)? })
+    }
+
+    /// Runs a simulation that may be refused, or not come to its end within a limit.
+    ///
+    /// # Errors
+    /// If the program cannot be run, or says something that is not understood.
+    pub(super) fn attempt(
+        &self,
+        simulation: &Simulation,
+        limit: Duration,
+    ) -> Result<Attempt, Failure> {
+        let before = cpu_time::of_children()?;
+        let log = simulation.out.with_extension("log");
+        let told = unable(log.display());
+        let file = File::create(&log).map_err(&told)?;
+        let mut command = self.command(simulation);
+        let mut child = command.arg("--quiet").stderr(file).spawn().map_err(self.cannot_start())?;
+        let clock = Instant::now();
+        let status = loop {
+            if let Some(status) = child.try_wait().map_err(self.cannot_start())? {
+                break status;
+            }
+            if clock.elapsed() > limit {
+                child.kill().and_then(|()| child.wait()).map_err(self.cannot_start())?;
+                return Ok(Attempt::TooLong);
+            }
+            thread::sleep(Duration::from_millis(20));
+        };
+        let cpu_s = cpu_time::of_children()? - before;
+        if status.success() {
+            return Ok(Attempt::Done(Measured { cpu_s, info: self.info(simulation)? }));
+        }
+        let message = fs::read_to_string(&log).map_err(told)?;
+        match status.code() {
+            Some(1 | 2) => Ok(Attempt::Refused(last_error(&message))),
+            _ => Ok(Attempt::Crashed(format!("{status}: {}", last_error(&message)))),
+        }
+    }
+
+    fn command(&self, simulation: &Simulation) -> Command {
         let Simulation { scene, frames, sets, out } = simulation;
         let mut command = Command::new(&self.path);
         command.arg("simulate").arg(scene).arg("--out").arg(out);
@@ -67,21 +129,19 @@ impl Program {
         sets.iter().for_each(|set| {
             command.args(["--set", set]);
         });
-        let before = cpu_time::of_children()?;
-        // Standard error is the user's: progress, warnings, what failed.
-        let status = command.stdout(Stdio::null()).status().map_err(self.cannot_start())?;
-        let cpu_s = cpu_time::of_children()? - before;
-        if !status.success() {
-            let scene = scene.display();
-            return Err(Failure::Unable(format!("the simulation of {scene} failed ({status})")));
-        }
+        command.stdout(Stdio::null());
+        command
+    }
+
+    /// What the recording of a simulation tells, which must be whole.
+    fn info(&self, Simulation { frames, out, .. }: &Simulation) -> Result<RunInfo, Failure> {
         let info = self.output(Command::new(&self.path).arg("info").arg(out).arg("--json"))?;
         let info = RunInfo::parse(&info).map_err(unable(out.display()))?;
         if info.n_frames() != *frames {
             let (n, out) = (info.n_frames(), out.display());
             return Err(Failure::Unable(format!("{out} has {n} frames instead of {frames}")));
         }
-        Ok(Measured { cpu_s, info })
+        Ok(info)
     }
 
     /// How many frames a scene has after the first.
@@ -130,13 +190,20 @@ impl Program {
         Ok(String::from_utf8_lossy(&output.stdout).into_owned())
     }
 
-    fn cannot_start<E: Display>(&self) -> impl FnOnce(E) -> Failure {
+    fn cannot_start<E: Display>(&self) -> impl Fn(E) -> Failure {
         unable(format!("cannot start {}", self.path.display()))
     }
 }
 
-fn unable<E: Display>(what: impl Display) -> impl FnOnce(E) -> Failure {
+fn unable<E: Display>(what: impl Display) -> impl Fn(E) -> Failure {
     move |error| Failure::Unable(format!("{what}: {error}"))
+}
+
+/// The error among what the program said: its last line that begins so, or the last of all.
+fn last_error(text: &str) -> String {
+    let mut lines = text.lines().rev();
+    let error = lines.clone().find(|line| line.starts_with("error"));
+    error.or_else(|| lines.next()).unwrap_or_default().to_owned()
 }
 
 /// The binary in what Cargo tells of a build: one JSON object a line.
@@ -153,6 +220,13 @@ fn executable(messages: &str) -> Option<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_error_is_found_among_warnings() {
+        assert_eq!(last_error("warning: a\nerror: b\n  c\n"), "error: b");
+        assert_eq!(last_error("x\ny"), "y");
+        assert_eq!(last_error(""), "");
+    }
 
     #[test]
     fn the_binary_is_the_one_that_cargo_names() {

@@ -24,6 +24,18 @@ impl RunInfo {
         all.get(1..).unwrap_or_default()
     }
 
+    /// One number of the initial state.
+    pub(super) fn initial(&self, pointer: &str) -> Option<f64> {
+        self.0["frames"].get(0)?.pointer(pointer)?.as_f64()
+    }
+
+    /// Whether wind acts on the cloth.
+    pub(super) fn has_wind(&self) -> bool {
+        let skipped = self.0["skipped"].as_array();
+        let is_wind = |why: &Value| why.as_str().is_some_and(|why| why.starts_with("wind: "));
+        !skipped.is_some_and(|skipped| skipped.iter().any(is_wind))
+    }
+
     /// Number of frames after the first.
     pub(super) fn n_frames(&self) -> usize {
         self.frames().len()
