@@ -11,11 +11,13 @@ mod fixed_or_adaptive;
 mod flag;
 mod machine;
 mod options;
+mod pay;
 mod program;
 mod report;
 mod run_info;
 mod stability;
 mod statistics;
+mod stiff;
 mod surface;
 mod told_by_tests;
 
@@ -44,7 +46,8 @@ struct Benchmark {
 }
 
 /// All benchmarks, in the order in which they run.
-const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK, contact::BENCHMARK, stability::BENCHMARK];
+const BENCHMARKS: &[Benchmark] =
+    &[flag::BENCHMARK, contact::BENCHMARK, stability::BENCHMARK, stiff::BENCHMARK, pay::BENCHMARK];
 
 /// What a benchmark works with.
 struct Context {

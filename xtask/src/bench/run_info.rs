@@ -29,11 +29,10 @@ impl RunInfo {
         self.0["frames"].get(0)?.pointer(pointer)?.as_f64()
     }
 
-    /// Whether wind acts on the cloth.
-    pub(super) fn has_wind(&self) -> bool {
-        let skipped = self.0["skipped"].as_array();
-        let is_wind = |why: &Value| why.as_str().is_some_and(|why| why.starts_with("wind: "));
-        !skipped.is_some_and(|skipped| skipped.iter().any(is_wind))
+    /// What the scene did not need, and why.
+    pub(super) fn skipped(&self) -> Vec<&str> {
+        let skipped = self.0["skipped"].as_array().map_or(&[][..], Vec::as_slice);
+        skipped.iter().filter_map(Value::as_str).collect()
     }
 
     /// Number of frames after the first.

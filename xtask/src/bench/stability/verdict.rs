@@ -47,11 +47,12 @@ impl Findings {
         let total: Vec<f64> = kinetic.iter().zip(&potential).map(|(k, p)| k + p).collect();
         let lowest = potential.iter().copied().fold(f64::INFINITY, f64::min);
         let range = most(&kinetic).max(start - lowest);
+        let is_windless = info.skipped().iter().any(|why| why.starts_with("wind: "));
         let rise = (most(&total) - start).max(0.0) / range.max(f64::MIN_POSITIVE);
         Findings {
             is_stiffer: stress.is_stiffer,
             is_finite,
-            rise: (stress.is_closed && !measured.info.has_wind()).then_some(rise),
+            rise: (stress.is_closed && is_windless).then_some(rise),
             stretch: last("/stretch/max"),
             crossings: last("/crossings"),
             iterations: info.sum("/newton_iterations") / info.sum("/stages"),
