@@ -21,6 +21,8 @@ struct Part {
     name: &'static str,
     /// Where it stands in the scene.
     at: &'static str,
+    /// Switched off.
+    off: fn() -> Value,
     /// On, but with nothing to do.
     idle: fn() -> Value,
     /// Whether it needs a mesh that adapts.
@@ -33,6 +35,7 @@ const PARTS: &[Part] = &[
     Part {
         name: "contact",
         at: "/contact",
+        off: || Value::Null,
         idle: || json!({}),
         adapts: false,
         skipped: "contact: ",
@@ -40,6 +43,7 @@ const PARTS: &[Part] = &[
     Part {
         name: "obstacles",
         at: "/obstacles",
+        off: || json!([]),
         idle: || {
             json!([{ "mesh": { "sphere": { "radius_m": 0.2, "detail": 4 } },
                      "transform": { "translate": [40, 0, 0] } }])
@@ -50,15 +54,24 @@ const PARTS: &[Part] = &[
     Part {
         name: "remeshing",
         at: "/cloths/0/remeshing",
+        off: || Value::Null,
         // The longest edges of the mesh are allowed, and nothing asks for shorter ones.
         idle: || json!({ "size_m": { "min": 0.019, "max": 0.036 } }),
         adapts: false,
         skipped: "sizing, remeshing: ",
     },
-    Part { name: "view", at: "/view", idle: || json!({}), adapts: true, skipped: "view: " },
+    Part {
+        name: "view",
+        at: "/view",
+        off: || Value::Null,
+        idle: || json!({}),
+        adapts: true,
+        skipped: "view: ",
+    },
     Part {
         name: "wind",
         at: "/wind",
+        off: || Value::Null,
         idle: || json!({ "velocity": [0, 0, 0], "density": 1e-9, "drag": 0 }),
         adapts: false,
         skipped: "wind: ",
@@ -66,6 +79,7 @@ const PARTS: &[Part] = &[
     Part {
         name: "strain_limits",
         at: "/cloths/0/strain_limits",
+        off: || Value::Null,
         idle: || json!([0.01, 100]),
         adapts: false,
         skipped: "strain limits: ",
@@ -78,7 +92,7 @@ fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
     for part in PARTS {
         let mut simulations = Vec::new();
         for (kind, value) in
-            [("absent", None), ("off", Some(Value::Null)), ("idle", Some((part.idle)()))]
+            [("absent", None), ("off", Some((part.off)())), ("idle", Some((part.idle)()))]
         {
             let mut scene = sheet(part.adapts);
             if let Some(value) = value {
