@@ -81,6 +81,8 @@ struct Newton<'a> {
     report: SolveReport,
     x: Vec<World3>,
     phi: f64,
+    /// The potential of the start at rest.
+    at_rest: f64,
     trial: Vec<World3>,
     lowest: Watchdog,
     kind: Stiffness,
@@ -108,7 +110,7 @@ pub(crate) fn minimise(
     settings: &NewtonSettings,
 ) -> Result<(Vec<World3>, SolveReport), SolveError> {
     let clock = Instant::now();
-    let (x, phi) = choose_start(system, inertia, starts)?;
+    let (x, phi, at_rest) = choose_start(system, inertia, starts)?;
     let energy_s = clock.elapsed().as_secs_f64();
     let report = SolveReport { stages: 1, residual: f64::INFINITY, energy_s, ..Default::default() };
     let mut newton = Newton {
@@ -125,6 +127,7 @@ pub(crate) fn minimise(
         report,
         x,
         phi,
+        at_rest,
     };
     let (mut budget, mut looks) = (settings.max_iterations, 0);
     loop {
@@ -148,25 +151,25 @@ pub(crate) fn minimise(
     Ok((newton.x, newton.report))
 }
 
-/// The start and its potential.
+/// The start, its potential, and that of the start at rest.
 fn choose_start(
     system: &mut System,
     inertia: &Inertia<'_>,
     [resting, ballistic]: &[Vec<World3>; 2],
-) -> Result<(Vec<World3>, f64), SolveError> {
+) -> Result<(Vec<World3>, f64, f64), SolveError> {
     let phi = inertia.potential(system, resting);
     // One step resembles the next: where it is better to start at rest, the other start is looked at
     // only now and then.
     if system.rests > 0 && phi.is_finite() {
         system.rests -= 1;
-        return Ok((resting.clone(), phi));
+        return Ok((resting.clone(), phi, phi));
     }
     let other = inertia.potential(system, ballistic);
     if other < phi || (other.is_finite() && !phi.is_finite()) {
-        Ok((ballistic.clone(), other))
+        Ok((ballistic.clone(), other, phi))
     } else if phi.is_finite() {
         system.rests = REST_STARTS;
-        Ok((resting.clone(), phi))
+        Ok((resting.clone(), phi, phi))
     } else {
         Err(SolveError::NotFinite { time: inertia.time, h: inertia.h })
     }
@@ -318,14 +321,21 @@ impl Newton<'_> {
         Ok(is_new)
     }
 
-    /// Shortens the way of the stage until nothing passes through anything on it.
+    /// Shortens the way of the stage until nothing passes through anything on it. If that takes it above
+    /// the start at rest, energy would come from nowhere: less of the way at a time does it better.
     fn secure(&mut self) -> Result<(), SolveError> {
         let Some(contact) = &mut self.system.contact else { return Ok(()) };
         let clock = Instant::now();
         let caught = |Blocked { place }| SolveError::Caught { time: self.inertia.time, place };
         self.report.shortened = contact.secure(&mut self.x, self.inertia.fixed).map_err(caught)?;
         self.report.touches = contact.n_touches();
+        let is_bent = self.report.shortened > 0 && !self.system.accepts_rise;
+        let rises = is_bent
+            && self.inertia.potential(self.system, &self.x) > self.at_rest + noise(self.at_rest);
         self.report.contact_s += clock.elapsed().as_secs_f64();
+        if rises {
+            return Err(SolveError::Rise { time: self.inertia.time, h: self.inertia.h });
+        }
         Ok(())
     }
 }

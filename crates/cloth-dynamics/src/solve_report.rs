@@ -103,6 +103,14 @@ pub enum SolveError {
         /// Where (m).
         place: World3,
     },
+    /// What was in the way left the cloth with more energy than it would have had at rest.
+    #[error("at time {time} s: impacts are too hard for the step of {h} s")]
+    Rise {
+        /// Time at the end of the stage (s).
+        time: f64,
+        /// Step of the stage (s).
+        h: f64,
+    },
     /// The contacts couple more vertices than the matrix can hold.
     #[error(transparent)]
     Pattern(#[from] PatternError),

@@ -49,6 +49,8 @@ pub struct System {
     pub(crate) contact: Option<Box<dyn Contact>>,
     /// Stages to come that need not look for a better start than rest.
     pub(crate) rests: u32,
+    /// Whether impacts may leave more energy than there would be at rest.
+    pub(crate) accepts_rise: bool,
     /// Brings back what a step leaves out of its strain limits, if there are any.
     pub(crate) limits: Option<StrainProjection>,
 }
@@ -58,6 +60,9 @@ impl std::fmt::Debug for System {
         f.debug_struct("System").field("forces", &self.force_names()).finish_non_exhaustive()
     }
 }
+
+/// A time in which nothing is dissipated (s).
+const MOMENT: f64 = 1e-12;
 
 impl System {
     /// Builds the forces that the fabrics and the environment call for, and the matrix pattern.
@@ -112,6 +117,7 @@ impl System {
             mesh_pattern: matrix.pattern().clone(),
             matrix,
             rests: 0,
+            accepts_rise: true,
             limits,
             contact: None,
         })
@@ -120,6 +126,13 @@ impl System {
     /// Gives the cloth contact. Steps then keep apart what is apart.
     pub fn set_contact(&mut self, contact: Box<dyn Contact>) {
         self.contact = Some(contact);
+    }
+
+    /// Whether a stage may end with more energy than the start at rest has because something was in the
+    /// way, as where an obstacle hits cloth; so at first. If not, it ends with
+    /// [`SolveError::Rise`](crate::SolveError::Rise): a shorter step does better.
+    pub fn accept_rise(&mut self, accepted: bool) {
+        self.accepts_rise = accepted;
     }
 
     /// Takes the contact back, with what it remembers.
@@ -137,6 +150,13 @@ impl System {
     /// whatever the current stage dissipates.
     pub fn energy(&self, x: &[World3]) -> f64 {
         self.forces.iter().map(|f| f.energy(x)).sum::<f64>() + self.springs.energy(x)
+    }
+
+    /// Potential energy of cloth that lies still at `x` (J): the fabric's, gravity's and the springs'.
+    /// What lags is taken from there until the next stage begins.
+    pub fn energy_at_rest(&mut self, x: &[World3]) -> f64 {
+        self.begin(Stage { x_t0: x, base: x, h: MOMENT });
+        self.energy(x)
     }
 
     /// Gradient of [`System::energy`] (N).

@@ -149,6 +149,10 @@ pub struct FrameReport {
     pub view: Option<ViewSummary>,
     /// Kinetic energy (J).
     pub kinetic_energy_j: f64,
+    /// Potential energy of fabrics, gravity and springs at the end of the steps, before remeshing (J);
+    /// absent in old recordings.
+    #[serde(default)]
+    pub potential_energy_j: Option<f64>,
     /// Stages that the scene does not need, and why.
     pub skipped: Vec<String>,
     /// Wall time.
@@ -204,6 +208,7 @@ impl FrameReport {
             }),
             view: remeshed.and_then(|r| r.view),
             kinetic_energy_j: world.cloth.kinetic_energy(),
+            potential_energy_j: Some(world.potential_energy_j),
             skipped: world.skipped(),
             seconds,
         }

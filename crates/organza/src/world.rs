@@ -94,6 +94,8 @@ pub struct World {
     remeshing: Option<Remeshing>,
     /// What is worked out once per mesh; absent after the mesh has changed.
     prepared: Option<Prepared>,
+    /// At the last frame, before it was remeshed (J).
+    pub(crate) potential_energy_j: f64,
 }
 
 /// What follows from the current mesh alone.
@@ -123,6 +125,8 @@ enum PrepareError {
 const HOLD_ROUNDS: u32 = 4;
 /// How often a failing step is halved before the run ends.
 const MAX_HALVINGS: u32 = 6;
+/// How often it is halved before impacts may bring energy into it.
+const RISE_DEPTH: u32 = 3;
 /// How often it is halved before obstacles let caught cloth through.
 const YIELD_DEPTH: u32 = 3;
 
@@ -180,12 +184,14 @@ impl World {
             },
             solver: solver.build(settings),
             prepared: None,
+            potential_energy_j: 0.0,
         };
         world.note_tangles();
         if let Some(crossings) = world.crossings(0) {
             world.warnings.push(World::tangle_warning("in the initial state", &crossings));
         }
         world.prepare().map_err(|e| BuildError::TooLarge(e.to_string()))?;
+        world.measure_energy();
         Ok(world)
     }
 
@@ -238,6 +244,7 @@ impl World {
             self.step(Step { time, h }, frame, 0, &mut solve, &mut retries, &mut seconds)?;
         }
         let stretch = StretchRange::of(&self.cloth);
+        self.measure_energy();
         let mut remeshed = None;
         let mut crossings = None;
         if let Some(remeshing) = &self.remeshing {
@@ -316,6 +323,7 @@ impl World {
         seconds.build += clock.elapsed().as_secs_f64();
         let Prepared { system, names } = self.prepared.as_mut().expect("prepare() has run");
         self.handles.take_hold(&self.cloth, names, step.time);
+        system.accept_rise(depth >= RISE_DEPTH);
         let constraints = |time: f64| self.handles.constraints(names, time);
         match self.integrator.advance(
             &mut self.cloth,
@@ -377,6 +385,12 @@ impl World {
         let time = frame as f64 * self.frame_s;
         let settings = self.contact.as_ref()?;
         Crossings::find(&self.cloth, self.bodies.surface.as_ref(), settings, time)
+    }
+
+    fn measure_energy(&mut self) {
+        if let Some(prepared) = &mut self.prepared {
+            self.potential_energy_j = prepared.system.energy_at_rest(&self.cloth.x);
+        }
     }
 
     /// Builds forces, contact, matrix and names if the mesh has changed.

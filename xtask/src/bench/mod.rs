@@ -18,14 +18,17 @@ mod machine;
 mod number;
 mod options;
 mod pareto;
+mod pay;
 mod points;
 mod program;
 mod provenance;
 mod report;
 mod resume;
 mod run_info;
+mod stability;
 mod stages;
 mod statistics;
+mod stiff;
 mod surface;
 mod table;
 mod told_by_tests;
@@ -56,7 +59,14 @@ struct Benchmark {
 }
 
 /// All benchmarks, in the order in which they run.
-const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK, contact::BENCHMARK, pareto::BENCHMARK];
+const BENCHMARKS: &[Benchmark] = &[
+    flag::BENCHMARK,
+    contact::BENCHMARK,
+    pareto::BENCHMARK,
+    stability::BENCHMARK,
+    stiff::BENCHMARK,
+    pay::BENCHMARK,
+];
 
 /// What a benchmark works with.
 struct Context {

@@ -5,8 +5,10 @@ use super::run_info::RunInfo;
 use crate::command::Failure;
 use serde_json::Value;
 use std::fmt::Display;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use std::time::Duration;
 
 /// The `organza` binary.
 #[derive(Clone, Debug)]
@@ -35,6 +37,16 @@ pub(super) struct Measured {
     pub(super) info: RunInfo,
 }
 
+/// How a simulation ended that may fail.
+#[derive(Clone, Debug)]
+pub(super) enum Attempt {
+    Done(Measured),
+    /// The error that the program ended with.
+    Refused(String),
+    Crashed(String),
+    TooLong,
+}
+
 impl Program {
     /// Builds the binary with Cargo, which also says where it is.
     ///
@@ -61,6 +73,44 @@ impl Program {
     /// # Errors
     /// If the run fails, or says something that is not understood.
     pub(super) fn simulate(&self, simulation: &Simulation) -> Result<Measured, Failure> {
+        // Standard error is the user's: progress, warnings, what failed.
+        let child::Ended { status, cpu_s, peak_mb } =
+            child::run(&mut self.command(simulation), None)?;
+        if !status.is_some_and(|status| status.success()) {
+            let (scene, status) = (simulation.scene.display(), status.unwrap_or_default());
+            return Err(Failure::Unable(format!("the simulation of {scene} failed ({status})")));
+        }
+        Ok(Measured { cpu_s, peak_mb, info: self.info(simulation)? })
+    }
+
+    /// Runs a simulation that may be refused, or not come to its end within a limit.
+    ///
+    /// # Errors
+    /// If the program cannot be run, or says something that is not understood.
+    pub(super) fn attempt(
+        &self,
+        simulation: &Simulation,
+        limit: Duration,
+    ) -> Result<Attempt, Failure> {
+        let log = simulation.out.with_extension("log");
+        let told = unable(log.display());
+        let file = File::create(&log).map_err(&told)?;
+        let mut command = self.command(simulation);
+        let child::Ended { status, cpu_s, peak_mb } =
+            child::run(command.arg("--quiet").stderr(file), Some(limit))?;
+        let Some(status) = status else { return Ok(Attempt::TooLong) };
+        if status.success() {
+            let info = self.info(simulation)?;
+            return Ok(Attempt::Done(Measured { cpu_s, peak_mb, info }));
+        }
+        let message = fs::read_to_string(&log).map_err(told)?;
+        match status.code() {
+            Some(1 | 2) => Ok(Attempt::Refused(last_error(&message))),
+            _ => Ok(Attempt::Crashed(format!("{status}: {}", last_error(&message)))),
+        }
+    }
+
+    fn command(&self, simulation: &Simulation) -> Command {
         let Simulation { scene, frames, sets, out } = simulation;
         let mut command = Command::new(&self.path);
         command.arg("simulate").arg(scene).arg("--out").arg(out);
@@ -69,20 +119,19 @@ impl Program {
         sets.iter().for_each(|set| {
             command.args(["--set", set]);
         });
-        // Standard error is the user's: progress, warnings, what failed.
-        let ended = child::run(command.stdout(Stdio::null()), None)?;
-        let child::Ended { status, cpu_s, peak_mb } = ended;
-        if !status.is_some_and(|status| status.success()) {
-            let (scene, status) = (scene.display(), status.unwrap_or_default());
-            return Err(Failure::Unable(format!("the simulation of {scene} failed ({status})")));
-        }
+        command.stdout(Stdio::null());
+        command
+    }
+
+    /// What the recording of a simulation tells, which must be whole.
+    fn info(&self, Simulation { frames, out, .. }: &Simulation) -> Result<RunInfo, Failure> {
         let info = self.output(Command::new(&self.path).arg("info").arg(out).arg("--json"))?;
         let info = RunInfo::parse(&info).map_err(unable(out.display()))?;
         if info.n_frames() != *frames {
             let (n, out) = (info.n_frames(), out.display());
             return Err(Failure::Unable(format!("{out} has {n} frames instead of {frames}")));
         }
-        Ok(Measured { cpu_s, peak_mb, info })
+        Ok(info)
     }
 
     /// How many frames a scene has after the first.
@@ -131,13 +180,20 @@ impl Program {
         Ok(String::from_utf8_lossy(&output.stdout).into_owned())
     }
 
-    fn cannot_start<E: Display>(&self) -> impl FnOnce(E) -> Failure {
+    fn cannot_start<E: Display>(&self) -> impl Fn(E) -> Failure {
         unable(format!("cannot start {}", self.path.display()))
     }
 }
 
-fn unable<E: Display>(what: impl Display) -> impl FnOnce(E) -> Failure {
+fn unable<E: Display>(what: impl Display) -> impl Fn(E) -> Failure {
     move |error| Failure::Unable(format!("{what}: {error}"))
+}
+
+/// The error among what the program said: its last line that begins so, or the last of all.
+fn last_error(text: &str) -> String {
+    let mut lines = text.lines().rev();
+    let error = lines.clone().find(|line| line.starts_with("error"));
+    error.or_else(|| lines.next()).unwrap_or_default().to_owned()
 }
 
 /// The binary in what Cargo tells of a build: one JSON object a line.
@@ -154,6 +210,13 @@ fn executable(messages: &str) -> Option<PathBuf> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_error_is_found_among_warnings() {
+        assert_eq!(last_error("warning: a\nerror: b\n  c\n"), "error: b");
+        assert_eq!(last_error("x\ny"), "y");
+        assert_eq!(last_error(""), "");
+    }
 
     #[test]
     fn the_binary_is_the_one_that_cargo_names() {

@@ -24,6 +24,17 @@ impl RunInfo {
         all.get(1..).unwrap_or_default()
     }
 
+    /// One number of the initial state.
+    pub(super) fn initial(&self, pointer: &str) -> Option<f64> {
+        self.0["frames"].get(0)?.pointer(pointer)?.as_f64()
+    }
+
+    /// What the scene did not need, and why.
+    pub(super) fn skipped(&self) -> Vec<&str> {
+        let skipped = self.0["skipped"].as_array().map_or(&[][..], Vec::as_slice);
+        skipped.iter().filter_map(Value::as_str).collect()
+    }
+
     /// Number of frames after the first.
     pub(super) fn n_frames(&self) -> usize {
         self.frames().len()

@@ -45,6 +45,19 @@ impl Surface {
         if surface.triangles.is_empty() { Err("it has no triangles".into()) } else { Ok(surface) }
     }
 
+    /// The centre of mass of a sheet of one density (m).
+    pub(super) fn center(&self) -> World {
+        let (mut sum, mut all) = ([0.0; 3], 0.0);
+        for ([a, b, c], corners) in &self.triangles {
+            let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+            all += area.abs();
+            for k in 0..3 {
+                sum[k] += area.abs() * corners.iter().map(|x| x[k]).sum::<f64>() / 3.0;
+            }
+        }
+        sum.map(|s| s / all)
+    }
+
     /// Smallest and largest material coordinates (m).
     pub(super) fn extent(&self) -> [Material; 2] {
         let start = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];

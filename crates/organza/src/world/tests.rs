@@ -116,3 +116,23 @@ fn a_first_frame_that_failed_has_the_bits_of_one_that_did_not() {
         assert_same(&good, &failed);
     }
 }
+
+/// What a free sheet loses in height it wins in speed, stretched and bent as it may be.
+#[test]
+fn reported_energies_add_up() {
+    let text = "{frames: 5, substeps: 50, newton: {max_iterations: 50, tolerance: 1e-9}, cloths: [
+        {fabric: 'woven-light', mesh: {grid: {size_m: [1, 1], cells: [6, 6]}},
+         initial_spin: {angular_velocity: [0.3, 2, 1], center: [0.5, 0.5, 0]}}]}";
+    let loaded = parse(text, "s", &LoadOptions::default(), &from_sources(&[])).unwrap();
+    let mut world = World::new(&loaded).unwrap();
+    let energy = |report: &crate::report::FrameReport| {
+        report.kinetic_energy_j + report.potential_energy_j.unwrap()
+    };
+    let first = crate::report::FrameReport::initial(&world);
+    for _ in 0..5 {
+        let report = world.advance().unwrap();
+        assert!(report.kinetic_energy_j > first.kinetic_energy_j + 0.01);
+        let change = energy(&report) - energy(&first);
+        assert!(change.abs() < 1e-4 * report.kinetic_energy_j, "{change} J");
+    }
+}

@@ -1,0 +1,65 @@
+//! Stiff cloth falls as fast as soft cloth, and costs the same.
+
+use super::program::Simulation;
+use super::report::{Figure, Report};
+use super::surface::Surface;
+use super::{Benchmark, Context};
+use crate::command::{Failure, say};
+
+pub(super) const BENCHMARK: Benchmark = Benchmark {
+    name: "stiff",
+    summary: "a sheet of 64 x 64 vertices at steps of 40 ms, up to 10^4 times as stiff",
+    run,
+};
+
+/// CPU seconds that C-IPC takes for a simulated second of the same, at each stiffness.
+const CASES: [(&str, f64); 3] = [("1", 40.0), ("100", 97.0), ("10000", 308.0)];
+/// Frames after which the drop is measured (0.2 s), and frames that are timed.
+const DROP: usize = 5;
+const FRAMES: usize = 50;
+
+fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    for (times, peer) in CASES {
+        let set = |text: &str| text.to_owned();
+        let simulation = Simulation {
+            scene: context.root.join("scenes/hang.json5"),
+            frames: if context.options.quick { DROP } else { FRAMES },
+            sets: vec![
+                set("cloths[0].remeshing=null"),
+                set("cloths[0].mesh.grid.cells=[63,63]"),
+                set("substeps=1"),
+                // As C-IPC, whose drop is that of this integrator at this step.
+                set("integrator=implicit-euler"),
+                // To the end, however long it takes: where it stops early, the sheet falls too slowly.
+                set("newton.max_iterations=300"),
+                format!("cloths[0].multipliers.stretching={times}"),
+            ],
+            out: context.runs().join(format!("stiff_{times}.mcap")),
+        };
+        let mut costs = Vec::new();
+        let mut note = String::new();
+        for _ in 0..context.options.runs() {
+            let run = context.program.simulate(&simulation)?;
+            costs.push(run.cpu_s * 25.0 / simulation.frames as f64);
+            note = run.info.troubles();
+        }
+        let folder = context.runs().join(format!("stiff_{times}"));
+        context.program.export_obj(&simulation.out, DROP, &folder)?;
+        let height = |frame: usize| {
+            let path = folder.join(format!("frame_{frame:05}.obj"));
+            Surface::read(&path).map(|surface| surface.center()[2]).map_err(Failure::Unable)
+        };
+        let drop = height(0)? - height(DROP)?;
+        let cpu_s = costs.iter().copied().fold(f64::INFINITY, f64::min);
+        say(format!("x {times}: drops by {drop:.4} m, {cpu_s:.2} CPU s a second; C-IPC {peer}"));
+        let name = |what: &str| format!("stiff.hang64.x{times}.{what}");
+        let about = format!(
+            "Whole process, one thread, per simulated second. C-IPC takes {peer} s on another machine.{note}"
+        );
+        report.add(&name("cpu_s"), Figure::median(&costs, "s", &about));
+        let about = "Centre of mass in the first 0.2 s; 0.19 m where implicit Euler converges at this step.";
+        report.add(&name("drop_m"), Figure::exact(drop, "m", about));
+        context.save(report)?;
+    }
+    Ok(())
+}
