@@ -139,9 +139,7 @@ impl Pose {
 /// How far the soles are above their height at rest: a smooth minimum over all, 0 at rest (m).
 fn lowest(maps: &[Isometry3<f64>; N_JOINTS]) -> f64 {
     const BLEND: f64 = 0.01;
-    let above = SOLES.map(|(x, ankle)| {
-        (maps[ankle as usize] * Point3::from(x)).z - x[2]
-    });
+    let above = SOLES.map(|(x, ankle)| (maps[ankle as usize] * Point3::from(x)).z - x[2]);
     let mean = above.iter().map(|z| (-z / BLEND).exp()).sum::<f64>() / above.len() as f64;
     -BLEND * mean.ln()
 }

@@ -138,11 +138,14 @@ fn pieces(inside: &[bool; 8]) -> Option<[Option<usize>; 12]> {
     };
     for side in SIDES {
         let edges: [usize; 4] = std::array::from_fn(|k| edge_between(side[k], side[(k + 1) % 4]));
-        let cut: Vec<usize> = (0..4).filter(|&k| inside[side[k]] != inside[side[(k + 1) % 4]]).collect();
+        let cut: Vec<usize> =
+            (0..4).filter(|&k| inside[side[k]] != inside[side[(k + 1) % 4]]).collect();
         match cut[..] {
             [a, b] => join(edges[a], edges[b]),
             [_, _, _, _] => {
-                (0..4).filter(|&k| inside[side[k]]).for_each(|k| join(edges[k], edges[(k + 3) % 4]));
+                (0..4)
+                    .filter(|&k| inside[side[k]])
+                    .for_each(|k| join(edges[k], edges[(k + 3) % 4]));
             }
             _ => {}
         }

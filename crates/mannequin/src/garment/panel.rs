@@ -4,7 +4,9 @@ use mesh_core::generate::{Diagonal, GenerateError, Lattice, Sheet};
 use mesh_core::{Material2, World3};
 
 /// Sweeps of the flattening.
-const SWEEPS: usize = 600;
+const SWEEPS: usize = 400;
+/// Share of the way to its shape that a triangle goes at once.
+const STEP: f64 = 0.7;
 
 /// A panel whose vertex in column i and row j is at `world(i, j)` (m). Columns run to the right and
 /// rows up as seen from outside.
@@ -13,16 +15,15 @@ pub(super) fn panel(
     world: impl Fn(usize, usize) -> World3,
 ) -> Result<Sheet, GenerateError> {
     let [nx, ny] = lattice.cells;
-    let x: Vec<Vec<World3>> =
-        (0..=ny).map(|j| (0..=nx).map(|i| world(i, j)).collect()).collect();
+    let x: Vec<Vec<World3>> = (0..=ny).map(|j| (0..=nx).map(|i| world(i, j)).collect()).collect();
     let flat = flattened(&x);
     lattice.sheet(Diagonal::Alternating, |i, j| flat[j][i], |i, j| x[j][i])
 }
 
-/// Positions in the plane at which the edges and the diagonals of all cells are as long as in space,
-/// as nearly as Gauss–Seidel sweeps over them bring it: every sweep moves the ends of each edge to its
-/// length (Provot1995). The start has rows and
-/// columns in full length.
+/// Positions in the plane at which all triangles of neighbours in a cell have, as nearly as may be, the
+/// shape they have in space: sweeps over them move each towards its shape, turned as fits best (shape
+/// matching, Mueller2005). A triangle that is inside out is turned back. The start has rows and columns
+/// in full length.
 fn flattened(x: &[Vec<World3>]) -> Vec<Vec<Material2>> {
     let (ny, nx) = (x.len() - 1, x[0].len() - 1);
     let middle = nx / 2;
@@ -41,36 +42,51 @@ fn flattened(x: &[Vec<World3>]) -> Vec<Vec<Material2>> {
         let row = along.iter().zip(&heights);
         u.push(row.map(|(s, height)| Material2::new(s - along[middle], *height)).collect());
     }
-    let mut edges = Vec::new();
-    for j in 0..=ny {
-        for i in 0..=nx {
-            let mut edge = |(k, l): (usize, usize), (p, q): (usize, usize)| {
-                edges.push(([l, k], [q, p], (x[l][k] - x[q][p]).norm()));
-            };
-            if i < nx {
-                edge((i, j), (i + 1, j));
-            }
-            if j < ny {
-                edge((i, j), (i, j + 1));
-            }
-            if i < nx && j < ny {
-                edge((i, j), (i + 1, j + 1));
-                edge((i + 1, j), (i, j + 1));
+    let mut triangles = Vec::with_capacity(4 * nx * ny);
+    for j in 0..ny {
+        for i in 0..nx {
+            let [p, q, r, s] = [[j, i], [j, i + 1], [j + 1, i + 1], [j + 1, i]];
+            for corners in [[p, q, r], [p, r, s], [p, q, s], [q, r, s]] {
+                triangles.push((corners, unrolled(corners.map(|[j, i]| x[j][i]))));
             }
         }
     }
     for sweep in 0..SWEEPS {
-        // To and fro, so that no side is preferred.
-        let mut relax = |&([l, k], [q, p], length): &([usize; 2], [usize; 2], f64)| {
-            let way = u[q][p] - u[l][k];
-            let now = way.norm().max(1e-12);
-            let step = way * (0.5 * (now - length) / now);
-            u[l][k] += step;
-            u[q][p] -= step;
+        let mut relax = |(corners, shape): &([[usize; 2]; 3], [Material2; 3])| {
+            let now = corners.map(|[j, i]| u[j][i]);
+            let middle = (now[0] + now[1] + now[2]) / 3.0;
+            let (mut sine, mut cosine) = (0.0, 0.0);
+            for (p, q) in shape.iter().zip(&now) {
+                let q = q - middle;
+                sine += p.x * q.y - p.y * q.x;
+                cosine += p.dot(&q);
+            }
+            let size = sine.hypot(cosine).max(1e-300);
+            let (sine, cosine) = (sine / size, cosine / size);
+            for (p, &[j, i]) in shape.iter().zip(corners) {
+                let turned = Material2::new(cosine * p.x - sine * p.y, sine * p.x + cosine * p.y);
+                u[j][i] = u[j][i].lerp(&(middle + turned), STEP);
+            }
         };
-        if sweep % 2 == 0 { edges.iter().for_each(&mut relax) } else { edges.iter().rev().for_each(relax) }
+        // To and fro, so that no side is preferred.
+        if sweep % 2 == 0 {
+            triangles.iter().for_each(&mut relax);
+        } else {
+            triangles.iter().rev().for_each(relax);
+        }
     }
     u
+}
+
+/// The triangle in the plane, counter-clockwise, its middle at the origin.
+fn unrolled([a, b, c]: [World3; 3]) -> [Material2; 3] {
+    let (ab, ac) = (b - a, c - a);
+    let base = ab.norm();
+    let foot = ac.dot(&ab) / base;
+    let height = ab.cross(&ac).norm() / base;
+    let corners = [Material2::zeros(), Material2::new(base, 0.0), Material2::new(foot, height)];
+    let middle = (corners[1] + corners[2]) / 3.0;
+    corners.map(|corner| corner - middle)
 }
 
 /// The point at `share` from −1 (x < 0) to 1 along the front half of a stadium: two half circles of

@@ -4,7 +4,7 @@ use super::panel::{cells, mix, panel, profile, stadium};
 use super::skirt;
 use mesh_core::World3;
 use mesh_core::generate::{Chain, GenerateError, Lattice, Seam, Sheet, lay_out, sew};
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::RangeInclusive;
 
 /// The shape of front and back, which are mirror images.
@@ -33,7 +33,7 @@ const JACKET: Shape = Shape {
     shoulder: 0.19,
     neck: 0.085,
     top: 1.515,
-    bulge: 0.105,
+    bulge: 0.09,
 };
 
 impl Shape {
@@ -52,13 +52,13 @@ impl Shape {
     }
 
     /// The same above the underarm, `up` from 0 there to 1 at the shoulders: the middle goes over the
-    /// chest in a quarter of an ellipse, the sides around the arms in half of one.
+    /// chest in a quarter of an ellipse, the sides around the arms in an arc.
     fn above(&self, share: f64, up: f64) -> World3 {
         let [underarm, radius] = self.underarm();
         let [x, y] = stadium(skirt::HALF, radius, share);
-        let middle = (y / radius).powi(2);
-        let y = y * (FRAC_PI_2 * up).cos() - self.bulge * (1.0 - middle) * (PI * up).sin();
-        let rise = mix(0.5 - 0.5 * (PI * up).cos(), (FRAC_PI_2 * up).sin(), middle);
+        let middle = -y / radius;
+        let y = -mix(self.bulge * (PI * up).sin(), radius * (FRAC_PI_2 * up).cos(), middle);
+        let rise = mix(up, (FRAC_PI_2 * up).sin(), middle);
         let x = mix(x, share * self.shoulder, up);
         World3::new(x, y, mix(underarm, self.top, rise))
     }
@@ -165,17 +165,13 @@ pub(super) fn dress(cell: f64) -> Result<Sheet, GenerateError> {
 const OVERLAP: f64 = 0.26;
 /// How far the outer front lies before the inner one (m).
 const BEFORE: f64 = 0.016;
-/// Reach of the sleeves in x, and their half heights at the shoulder and the cuff (m).
+/// Reach of the sleeves in x, and their size there over that at the shoulder (1).
 const CUFF: f64 = 0.60;
-const SLEEVE: [f64; 2] = [0.105, 0.085];
+const TAPER: f64 = 0.85;
 
 /// A front of the jacket, `sign` 1 for the inner one at x > 0 and −1 for the outer one. Column 0 is at
 /// the smaller x.
-fn front(
-    lattice: &Lattice,
-    [below, above]: [usize; 2],
-    sign: f64,
-) -> Result<Sheet, GenerateError> {
+fn front(lattice: &Lattice, [below, above]: [usize; 2], sign: f64) -> Result<Sheet, GenerateError> {
     let shape = &JACKET;
     panel(lattice, |i, j| {
         let across = i as f64 / lattice.cells[0] as f64;
@@ -217,11 +213,14 @@ pub(super) fn jacket(cell: f64) -> Result<Sheet, GenerateError> {
     for sign in [1.0, -1.0] {
         sheets.push(panel(&sleeve_lattice, |i, j| {
             let out = i as f64 / along as f64;
-            let size = mix(SLEEVE[0], SLEEVE[1], out);
-            let (sine, cosine) = (TAU * j as f64 / (2 * above) as f64).sin_cos();
-            let middle = 0.5 * (shape.underarm()[0] + shape.top);
-            let z = middle - cosine * size;
-            World3::new(sign * mix(shape.shoulder, CUFF, out), -sign * sine * size, z)
+            let size = mix(1.0, TAPER, out);
+            // Two arcs, as the armhole: up over the front, down over the back.
+            let turn = j as f64 / above as f64;
+            let up = if turn <= 1.0 { turn } else { 2.0 - turn };
+            let [low, high] = [shape.underarm()[0], shape.top];
+            let z = 0.5 * (low + high) + (up - 0.5) * (high - low) * size;
+            let y = -sign * shape.bulge * (PI * turn).sin() * size;
+            World3::new(sign * mix(shape.shoulder, CUFF, out), y, z)
         })?);
     }
     lay_out(&mut sheets, 0.02);
@@ -232,17 +231,15 @@ pub(super) fn jacket(cell: f64) -> Result<Sheet, GenerateError> {
         column(sheet, &front_lattice, if sheet == 1 { shoulder } else { 0 }, rows)
     };
     let shoulders = |sheet: usize| top(sheet, &front_lattice, 0..=shoulder);
-    let around = |sheet: usize, rows: RangeInclusive<usize>| column(sheet, &sleeve_lattice, 0, rows);
+    let around =
+        |sheet: usize, rows: RangeInclusive<usize>| column(sheet, &sleeve_lattice, 0, rows);
     let under = |sheet: usize, j: usize| Chain::new(sheet, sleeve_lattice.row(j));
     // The sleeve at x > 0 goes from under the arm over the front and back over the back, the other
     // one the other way.
     let seams = [
         Seam { first: outer(1, 0..=below), second: back(0, 0..=below) },
         Seam { first: outer(2, 0..=below), second: back(columns, 0..=below) },
-        Seam {
-            first: shoulders(1),
-            second: reversed(top(0, &back_lattice, 0..=shoulder)),
-        },
+        Seam { first: shoulders(1), second: reversed(top(0, &back_lattice, 0..=shoulder)) },
         Seam {
             first: shoulders(2),
             second: reversed(top(0, &back_lattice, columns - shoulder..=columns)),

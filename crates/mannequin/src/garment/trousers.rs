@@ -31,7 +31,7 @@ fn point(share: f64, z: f64) -> World3 {
     }
     // From half of an ellipse around the leg to a quarter of the cross-section of the hips.
     let hips = stadium(HALF, profile(&HIPS, z), 1.0 - share);
-    let above = (0.5 * PI * (up / 0.38).min(1.0)).sin();
+    let above = (0.5 * PI * (up / 0.7).min(1.0)).sin();
     World3::new(mix(leg[0], hips[0], above), mix(leg[1], hips[1], above), z)
 }
 

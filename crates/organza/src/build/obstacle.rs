@@ -3,8 +3,9 @@
 use super::BuildError;
 use crate::character::{self, Container};
 use crate::obstacle::{Frames, Obstacle, Shape};
-use crate::scene::format::Gltf;
+use crate::scene::format::{Action, CharacterFile, Gltf};
 use crate::scene::{Loaded, ObstacleSource, Sequence, limits};
+use mannequin::{Mannequin, MannequinError};
 use mesh_core::World3;
 use mesh_core::generate::{self, Diagonal, GenerateError, Surface};
 use mesh_core::obj::{self, ObjMesh};
@@ -41,6 +42,9 @@ fn shape(source: &ObstacleSource, loaded: &Loaded) -> Result<Shape, String> {
             let read = character(gltf, loaded).map_err(|e| format!("{}: {e}", gltf.file));
             return read.map(Shape::Character);
         }
+        ObstacleSource::Character(character) => {
+            return mannequin(character).map(Shape::Mannequin).map_err(|e| e.to_string());
+        }
         ObstacleSource::Sphere(s) => generated(generate::sphere(s.radius_m, s.detail as usize)),
         ObstacleSource::Cuboid(b) => generated(generate::cuboid(b.size_m)),
         ObstacleSource::Plane(plane) => {
@@ -59,6 +63,23 @@ fn shape(source: &ObstacleSource, loaded: &Loaded) -> Result<Shape, String> {
         }
     };
     surface.map(Shape::Rigid)
+}
+
+fn mannequin(character: &CharacterFile) -> Result<Mannequin, MannequinError> {
+    let motion = mannequin::Motion {
+        action: match character.motion {
+            Action::Stand => mannequin::Action::Stand,
+            Action::Walk => mannequin::Action::Walk,
+            Action::Turn => mannequin::Action::Turn,
+            Action::Kick => mannequin::Action::Kick,
+            Action::Dance => mannequin::Action::Dance,
+        },
+        phase: character.phase,
+        seed: u64::from(character.seed),
+        start: character.start_s,
+        ease: character.ease_s,
+    };
+    Mannequin::new(character.cell_m, motion)
 }
 
 fn read_obj(file: &str, loaded: &Loaded) -> Result<ObjMesh, String> {

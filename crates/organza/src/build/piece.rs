@@ -1,7 +1,7 @@
 //! The mesh of one cloth: read from files or generated.
 
 use super::BuildError;
-use crate::scene::format::{Diagonal as SceneDiagonal, Skirt, Tunic};
+use crate::scene::format::{Diagonal as SceneDiagonal, GarmentKind, Skirt, Tunic};
 use crate::scene::{self, Dialect, Loaded, MeshSource, suggestion};
 use mesh_core::generate::{self, Border, Diagonal, GenerateError, Sheet};
 use mesh_core::obj;
@@ -47,6 +47,20 @@ pub(super) fn piece(cloth: &scene::Cloth, loaded: &Loaded) -> Result<Piece, Buil
         Err(source) => Err(BuildError::Generate { cloth: cloth.name.clone(), source }),
     };
     match &cloth.mesh {
+        MeshSource::Garment(worn) => {
+            let garment = match worn.kind {
+                GarmentKind::Dress => mannequin::Garment::Dress,
+                GarmentKind::Skirt => mannequin::Garment::Skirt,
+                GarmentKind::Trousers => mannequin::Garment::Trousers,
+                GarmentKind::Jacket => mannequin::Garment::Jacket,
+                GarmentKind::Belt => mannequin::Garment::Belt,
+            };
+            let sheet = garment.sheet(worn.cell_m);
+            let Sheet { mesh, positions, borders } = sheet
+                .map_err(|source| BuildError::Garment { cloth: cloth.name.clone(), source })?;
+            let panels = garment.panels().iter().map(|&name| name.to_owned()).collect();
+            Ok(Piece { mesh, positions, vertex_of_file: None, borders, panels })
+        }
         MeshSource::Obj { obj: file, material_obj } => {
             let read = |file: &String| {
                 let bytes = loaded.source(file).unwrap_or_default();

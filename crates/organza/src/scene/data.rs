@@ -1,9 +1,9 @@
 //! A scene that has passed every check: defaults filled in, names and files resolved.
 
 use super::format::{
-    BendingModel, Camera, Capsule, Cuboid, Damping, Disc, Gltf, Grid, Integrator, LinearSolver,
-    Multipliers, Newton, Plane, Poncho, Recording, Remeshing, Select, Skirt, Sphere, Spin, Torus,
-    Tube, Tunic, Wind,
+    BendingModel, Camera, Capsule, CharacterFile, Cuboid, Damping, Disc, GarmentKind, Gltf, Grid,
+    Integrator, LinearSolver, Multipliers, Newton, Plane, Poncho, Recording, Remeshing, Select,
+    Skirt, Sphere, Spin, Torus, Tube, Tunic, Wind,
 };
 use super::motion::{Motion, Transform};
 use crate::contact::ContactSettings;
@@ -131,6 +131,19 @@ pub enum MeshSource {
     Tunic(Tunic),
     /// A poncho.
     Poncho(Poncho),
+    /// A garment that fits a character.
+    Garment(Garment),
+}
+
+/// A garment and who wears it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Garment {
+    /// Which garment.
+    pub kind: GarmentKind,
+    /// Name of the obstacle that wears it, which is a [`ObstacleSource::Character`].
+    pub on: String,
+    /// About how long the edges of the mesh are (m).
+    pub cell_m: f64,
 }
 
 /// Holds or moves vertices of a cloth.
@@ -182,6 +195,8 @@ pub enum ObstacleSource {
     Sequence(Sequence),
     /// A character with a skeleton, from a glTF file.
     Gltf(Gltf),
+    /// A mannequin.
+    Character(CharacterFile),
     /// A sphere.
     Sphere(Sphere),
     /// A box.

@@ -1,6 +1,7 @@
 //! The scene format, key by key. These types are what a scene file may say; their comments are the
 //! published JSON schema. [`Scene`](super::Scene) is what a valid file means.
 
+mod character;
 mod cloth;
 mod handle;
 mod mesh;
@@ -8,6 +9,7 @@ mod obstacle;
 mod solver;
 mod view;
 
+pub use character::*;
 pub use cloth::*;
 pub use handle::*;
 pub use mesh::*;
@@ -67,6 +69,9 @@ pub struct SceneFile {
     /// Bodies that cloth cannot pass.
     #[serde(default)]
     pub obstacles: Vec<ObstacleFile>,
+    /// Characters in rows, with what they wear.
+    #[serde(default)]
+    pub crowd: Option<CrowdFile>,
     /// How things touch. Absent means that cloth does not touch cloth, and that obstacles, if there
     /// are any, are touched with the default numbers.
     #[serde(default)]
@@ -153,6 +158,12 @@ mod default {
     }
     pub(super) fn friction() -> f64 {
         0.3
+    }
+    pub(super) fn garment_cell_m() -> f64 {
+        0.035
+    }
+    pub(super) fn crowd_spacing_m() -> [f64; 2] {
+        [1.8, 1.8]
     }
     pub(super) fn contact_thickness_m() -> f64 {
         0.005
