@@ -228,9 +228,9 @@ fn dance(angles: &mut Angles, c: f64, c0: f64, wide: f64, chance: [f64; 3]) -> I
         let lowered = 0.55 + 0.35 * wide * (c + chance[0]).sin();
         angles.arm(side, lowered, 0.30 * (2.0 * c + chance[1]).sin(), 0.45 + 0.25 * c.cos());
     }
-    angles.turn(Joint::Pelvis, [0.0, 0.09 * (2.0 * c).sin(), 0.25 * c.sin()]);
-    angles.turn(Joint::Spine, [0.05, -0.08 * (2.0 * c).sin(), -0.15 * (c + chance[2]).sin()]);
-    angles.turn(Joint::Chest, [0.04 * c.cos(), -0.08 * (2.0 * c).sin(), -0.15 * c.sin()]);
+    angles.turn(Joint::Pelvis, [0.0, 0.06 * (2.0 * c).sin(), 0.25 * c.sin()]);
+    angles.turn(Joint::Spine, [0.04, -0.05 * (2.0 * c).sin(), -0.10 * (c + chance[2]).sin()]);
+    angles.turn(Joint::Chest, [0.03 * c.cos(), -0.04 * (2.0 * c).sin(), -0.10 * c.sin()]);
     angles.turn(Joint::Head, [0.05, 0.0, 0.25 * c.sin()]);
     // The floor is crossed and turned upon, from where it began.
     let path = |c: f64| Vector3::new(0.16 * c.sin(), 0.10 * (2.0 * c).sin(), 0.0);

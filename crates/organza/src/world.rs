@@ -249,7 +249,8 @@ impl World {
             let is_tangled = self.tangled.matters();
             let tangled_before = if is_tangled { self.contour_length(frame) } else { 0.0 };
             let run = |cloth: &mut ClothState, hold: &[u64]| {
-                remeshing.run(cloth, frame as f64 * self.frame_s, &keep, hold).map_err(error)
+                let time = frame as f64 * self.frame_s;
+                remeshing.run(cloth, time, &self.obstacles, &keep, hold).map_err(error)
             };
             let mut done = run(&mut self.cloth, &[])?;
             if let Some(saved) = saved {

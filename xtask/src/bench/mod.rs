@@ -16,6 +16,7 @@ mod report;
 mod run_info;
 mod statistics;
 mod surface;
+mod view;
 
 use crate::command::{Command, Failure, say};
 use options::Options;
@@ -42,7 +43,7 @@ struct Benchmark {
 }
 
 /// All benchmarks, in the order in which they run.
-const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK, contact::BENCHMARK];
+const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK, contact::BENCHMARK, view::BENCHMARK];
 
 /// What a benchmark works with.
 struct Context {

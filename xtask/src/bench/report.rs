@@ -30,6 +30,12 @@ impl Figure {
         Figure::of(mean(values), values, unit, note)
     }
 
+    /// The root mean square of different things; `None` if there are none.
+    pub(super) fn rms(values: &[f64], unit: &'static str, note: &str) -> Option<Figure> {
+        let squares: Vec<f64> = values.iter().map(|x| x * x).collect();
+        Figure::of(mean(&squares).map(f64::sqrt), values, unit, note)
+    }
+
     /// A number that every repetition would give again.
     pub(super) fn exact(value: f64, unit: &'static str, note: &str) -> Option<Figure> {
         Figure::of(Some(value), &[value], unit, note)
@@ -69,6 +75,11 @@ impl Report {
         };
         self.figures.retain(|(other, _)| other != name);
         self.figures.push((name.to_owned(), figure));
+    }
+
+    /// The value of a figure that has been added.
+    pub(super) fn value(&self, name: &str) -> Option<f64> {
+        self.figures.iter().find(|(other, _)| other == name).map(|(_, figure)| figure.value)
     }
 
     /// Adds a sentence on what was left out.

@@ -21,10 +21,10 @@ struct Shape {
 }
 
 const DRESS: Shape = Shape {
-    radii: &[skirt::WAIST, [1.29, 0.118]],
+    radii: &[skirt::WAIST, [1.285, 0.122]],
     shoulder: 0.138,
     neck: 0.080,
-    top: 1.512,
+    top: 1.525,
     bulge: 0.088,
 };
 

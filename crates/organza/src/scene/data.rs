@@ -46,9 +46,20 @@ pub struct Scene {
     /// The camera over time; there if `camera` is.
     pub camera_path: Option<CameraPath>,
     /// Mesh sizes by what the camera sees; only where there is a camera.
-    pub view: Option<ViewSettings>,
+    pub view: Option<View>,
     /// What is recorded.
     pub recording: Recording,
+}
+
+/// Mesh sizes by what cameras see.
+#[derive(Debug, Clone, PartialEq)]
+pub struct View {
+    /// The constants.
+    pub settings: ViewSettings,
+    /// Whether what stands in the way counts.
+    pub occlusion: bool,
+    /// Cameras besides that of the scene.
+    pub more_cameras: Vec<CameraPath>,
 }
 
 impl Scene {

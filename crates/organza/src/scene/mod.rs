@@ -31,7 +31,9 @@ pub(crate) mod text;
 pub(crate) mod typed;
 pub(crate) mod unsupported;
 
-pub use data::{Cloth, Garment, Handle, MeshSource, Obstacle, ObstacleSource, Scene, Sequence};
+pub use data::{
+    Cloth, Garment, Handle, MeshSource, Obstacle, ObstacleSource, Scene, Sequence, View,
+};
 pub(crate) use files::Files;
 pub use files::{Dialect, FileError, FileRequest, Resolver, Source, from_disk, from_sources};
 pub use issue::{Issue, IssueKind, Origin, Position, SceneErrors};

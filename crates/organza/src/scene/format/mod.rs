@@ -176,7 +176,14 @@ mod default {
     }
     pub(super) fn view() -> super::ViewFile {
         let sizing_view::ViewSettings {
-            v_back, v_out, margin, window, size_min_px, size_max, ..
+            v_back,
+            v_out,
+            v_hidden,
+            margin,
+            window,
+            size_min_px,
+            size_max,
+            ..
         } = sizing_view::ViewSettings::default();
         super::ViewFile {
             v_back,
@@ -185,6 +192,9 @@ mod default {
             window_frames: window,
             size_min_px,
             size_max_m: size_max,
+            occlusion: false,
+            v_hidden,
+            cameras: Vec::new(),
         }
     }
     pub(super) fn resolution() -> [u32; 2] {

@@ -102,8 +102,11 @@ pub(super) fn resolve(
         }
     }
     let up = super::data::up(file.gravity);
-    let camera_path = view::path(file.camera.as_ref(), &file.shots, up, &top);
-    let view = file.view.and_then(|view| view::settings(view, file.camera.is_some(), &top));
+    let facts = view::Facts { up, frames_per_second: file.frames_per_second, frames: file.frames };
+    let camera_path = view::path(file.camera.as_ref(), &file.shots, &facts, &top, context);
+    let view = file
+        .view
+        .and_then(|view| view::settings(view, file.camera.is_some(), &facts, &top, context));
     Some(Scene {
         name: file.name.unwrap_or_else(|| default_name.to_owned()),
         frames: file.frames,
