@@ -196,7 +196,7 @@ fn walk(angles: &mut Angles, c: f64, wide: f64, turns: f64) -> Isometry3<f64> {
 fn turn(angles: &mut Angles, c: f64, wide: f64, turns: f64, phase: f64) -> Isometry3<f64> {
     for (side, c) in [(&LEFT, c), (&RIGHT, c + PI)] {
         let lift = swell(c);
-        angles.leg(side, 0.25 * lift, 0.08 + 0.10 * lift, 0.12 + 0.45 * lift);
+        angles.leg(side, 0.25 * lift, 0.12 + 0.10 * lift, 0.12 + 0.45 * lift);
         angles.arm(side, 0.35 + 0.25 * wide * c.cos(), -0.15, 0.35);
     }
     angles.turn(Joint::Spine, [0.05 * c.sin(), 0.06 * c.cos(), 0.0]);
@@ -223,8 +223,8 @@ fn kick(angles: &mut Angles, c: f64, wide: f64) -> Isometry3<f64> {
 fn dance(angles: &mut Angles, c: f64, c0: f64, wide: f64, chance: [f64; 3]) -> Isometry3<f64> {
     for (side, c) in [(&LEFT, c), (&RIGHT, c + PI)] {
         let (lift, bounce) = (swell(c), 0.5 + 0.5 * (4.0 * c).cos());
-        let bent = 0.15 + 0.18 * bounce + 0.45 * lift;
-        angles.leg(side, 0.5 * bent + 0.12 * lift, 0.08 + 0.14 * wide * lift, bent);
+        let bent = 0.15 + 0.14 * bounce + 0.35 * lift;
+        angles.leg(side, 0.5 * bent + 0.12 * lift, 0.12 + 0.14 * wide * lift, bent);
         let lowered = 0.55 + 0.35 * wide * (c + chance[0]).sin();
         angles.arm(side, lowered, 0.30 * (2.0 * c + chance[1]).sin(), 0.45 + 0.25 * c.cos());
     }

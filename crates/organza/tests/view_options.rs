@@ -41,7 +41,7 @@ fn cloth_behind_a_body_is_coarse() {
     let longest = |hidden: bool| {
         let mesh = &world.cloth.mesh;
         let middle =
-            |h| (world.cloth.position(mesh.origin(h)) + world.cloth.position(mesh.dest(h))) * 0.5;
+            |h| (world.cloth.x[mesh.origin(h).index()] + world.cloth.x[mesh.dest(h).index()]) * 0.5;
         // The edge of the lid hides up to x = 0.5 · 1.5/1.3.
         let of =
             mesh.edges().filter(|&h| if hidden { middle(h).x < 0.4 } else { middle(h).x > 0.65 });

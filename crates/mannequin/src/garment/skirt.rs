@@ -8,8 +8,8 @@ use std::f64::consts::PI;
 /// Half of the straight part of the cross-section (m).
 pub(super) const HALF: f64 = 0.06;
 /// Height and radius of the waist and of the hem (m).
-pub(super) const WAIST: [f64; 2] = [1.08, 0.110];
-const HEM: [f64; 2] = [0.46, 0.30];
+pub(super) const WAIST: [f64; 2] = [1.08, 0.102];
+const HEM: [f64; 2] = [0.48, 0.33];
 
 /// Front and back, with `columns` cells across each; column i is at `share(i)` from −1 to 1 across.
 pub(super) fn panels(
