@@ -6,6 +6,7 @@ use crate::skeleton::weights;
 use crate::skin::skin;
 use mesh_core::World3;
 use nalgebra::{Point3, Vector3};
+use std::sync::Arc;
 
 /// A body with a closed skin that moves for ever.
 ///
@@ -20,6 +21,15 @@ use nalgebra::{Point3, Vector3};
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mannequin {
+    body: Arc<Body>,
+    motion: Motion,
+}
+
+/// What does not move.
+#[derive(Clone, Debug, PartialEq)]
+struct Body {
+    /// Wanted length of edges (m).
+    cell: f64,
     triangles: Vec<[u32; 3]>,
     /// Positions in the body at rest (m).
     rest: Vec<World3>,
@@ -27,7 +37,6 @@ pub struct Mannequin {
     influences: Vec<(usize, f64)>,
     /// The first influence of every vertex, and the number of all.
     first: Vec<usize>,
-    motion: Motion,
 }
 
 impl Mannequin {
@@ -44,11 +53,7 @@ impl Mannequin {
         check("the length of edges", cell, "from 0.008 to 0.04 (m)", |cell| {
             (Mannequin::MIN_CELL..=Mannequin::MAX_CELL).contains(&cell)
         })?;
-        check("the phase", motion.phase, "finite", f64::is_finite)?;
-        check("the start", motion.start, "finite (s)", f64::is_finite)?;
-        check("the time to ease in", motion.ease, "from 0 on and finite (s)", |ease| {
-            ease >= 0.0 && ease.is_finite()
-        })?;
+        check_motion(&motion)?;
         let surface = skin(cell)?;
         let (mut influences, mut first) = (Vec::new(), vec![0]);
         for x in &surface.positions {
@@ -58,17 +63,31 @@ impl Mannequin {
             first.push(influences.len());
         }
         let (triangles, rest) = (surface.triangles, surface.positions);
-        Ok(Mannequin { triangles, rest, influences, first, motion })
+        Ok(Mannequin { body: Arc::new(Body { cell, triangles, rest, influences, first }), motion })
+    }
+
+    /// The same body with another motion; both share the skin.
+    ///
+    /// # Errors
+    /// If a number of the motion is out of range.
+    pub fn moving(&self, motion: Motion) -> Result<Mannequin, MannequinError> {
+        check_motion(&motion)?;
+        Ok(Mannequin { body: self.body.clone(), motion })
+    }
+
+    /// The length of edges that it was made with (m).
+    pub fn cell(&self) -> f64 {
+        self.body.cell
     }
 
     /// Three vertices each, counter-clockwise seen from outside.
     pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.triangles
+        &self.body.triangles
     }
 
     /// Number of vertices.
     pub fn n_vertices(&self) -> usize {
-        self.rest.len()
+        self.body.rest.len()
     }
 
     /// How it moves.
@@ -85,13 +104,22 @@ impl Mannequin {
     /// their bones take them.
     pub fn positions(&self, time: f64) -> Vec<World3> {
         let bones = self.motion.pose(time).bones();
+        let Body { rest, influences, first, .. } = &*self.body;
         let place = |v: usize| {
-            let x = Point3::from(self.rest[v]);
-            let parts = &self.influences[self.first[v]..self.first[v + 1]];
+            let x = Point3::from(rest[v]);
+            let parts = &influences[first[v]..first[v + 1]];
             parts.iter().fold(Vector3::zeros(), |sum, &(bone, weight)| {
                 sum + (bones[bone] * x).coords * weight
             })
         };
-        (0..self.rest.len()).map(place).collect()
+        (0..rest.len()).map(place).collect()
     }
+}
+
+fn check_motion(motion: &Motion) -> Result<(), MannequinError> {
+    check("the phase", motion.phase, "finite", f64::is_finite)?;
+    check("the start", motion.start, "finite (s)", f64::is_finite)?;
+    check("the time to ease in", motion.ease, "from 0 on and finite (s)", |ease| {
+        ease >= 0.0 && ease.is_finite()
+    })
 }

@@ -127,10 +127,11 @@ pub struct Built {
 pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
     let scene = &loaded.scene;
     let mut joined = Joined::default();
+    let mut wardrobe = piece::Wardrobe::default();
     let (mut fabrics, mut garments, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
     let (mut handles, mut first_vertices) = (Handles::default(), Vec::new());
     for (index, cloth) in scene.cloths.iter().enumerate() {
-        let piece = piece::piece(cloth, loaded)?;
+        let piece = piece::piece(cloth, loaded, &mut wardrobe)?;
         let first = fabrics.len() as u32;
         fabrics.extend(fabrics_of_panels(cloth, &piece, &mut warnings)?);
         let (panels, thickness) = (first..fabrics.len() as u32, cloth.thickness_m);

@@ -14,9 +14,10 @@ use mesh_core::obj::{self, ObjMesh};
 pub(super) fn obstacles(loaded: &Loaded) -> Result<Vec<Obstacle>, BuildError> {
     let mut obstacles: Vec<Obstacle> = Vec::new();
     let mut n_triangles = 0;
+    let mut bodies = Vec::new();
     for (index, body) in loaded.scene.obstacles.iter().enumerate() {
         let error = |message| BuildError::Obstacle { obstacle: index, message };
-        let shape = shape(&body.mesh, loaded).map_err(error)?;
+        let shape = shape(&body.mesh, loaded, &mut bodies).map_err(error)?;
         let motion = body.motion.as_ref();
         let name = body.name.as_str();
         let mut obstacle = Obstacle::new(name, shape, &body.transform, motion, body.friction)
@@ -32,8 +33,12 @@ pub(super) fn obstacles(loaded: &Loaded) -> Result<Vec<Obstacle>, BuildError> {
     Ok(obstacles)
 }
 
-/// Reads or makes the surface of an obstacle.
-fn shape(source: &ObstacleSource, loaded: &Loaded) -> Result<Shape, String> {
+/// Reads or makes the surface of an obstacle; `bodies` are the mannequins made so far.
+fn shape(
+    source: &ObstacleSource,
+    loaded: &Loaded,
+    bodies: &mut Vec<Mannequin>,
+) -> Result<Shape, String> {
     let generated = |surface: Result<Surface, GenerateError>| surface.map_err(|e| e.to_string());
     let surface = match source {
         ObstacleSource::Obj(file) => read_obj(file, loaded).map(|read| read.to_surface()),
@@ -43,7 +48,7 @@ fn shape(source: &ObstacleSource, loaded: &Loaded) -> Result<Shape, String> {
             return read.map(Shape::Character);
         }
         ObstacleSource::Character(character) => {
-            return mannequin(character).map(Shape::Mannequin).map_err(|e| e.to_string());
+            return mannequin(character, bodies).map(Shape::Mannequin).map_err(|e| e.to_string());
         }
         ObstacleSource::Sphere(s) => generated(generate::sphere(s.radius_m, s.detail as usize)),
         ObstacleSource::Cuboid(b) => generated(generate::cuboid(b.size_m)),
@@ -65,7 +70,11 @@ fn shape(source: &ObstacleSource, loaded: &Loaded) -> Result<Shape, String> {
     surface.map(Shape::Rigid)
 }
 
-fn mannequin(character: &CharacterFile) -> Result<Mannequin, MannequinError> {
+/// A mannequin, with the skin of one that has been made already if there is one like it.
+fn mannequin(
+    character: &CharacterFile,
+    bodies: &mut Vec<Mannequin>,
+) -> Result<Mannequin, MannequinError> {
     let motion = mannequin::Motion {
         action: match character.motion {
             Action::Stand => mannequin::Action::Stand,
@@ -79,7 +88,11 @@ fn mannequin(character: &CharacterFile) -> Result<Mannequin, MannequinError> {
         start: character.start_s,
         ease: character.ease_s,
     };
-    Mannequin::new(character.cell_m, motion)
+    if let Some(body) = bodies.iter().find(|body| body.cell() == character.cell_m) {
+        return body.moving(motion);
+    }
+    bodies.push(Mannequin::new(character.cell_m, motion)?);
+    Ok(bodies[bodies.len() - 1].clone())
 }
 
 fn read_obj(file: &str, loaded: &Loaded) -> Result<ObjMesh, String> {
