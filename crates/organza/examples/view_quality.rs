@@ -96,7 +96,7 @@ fn error(path: &Path, [first, last, every]: [u64; 3], horizon: u64) -> Outcome<s
         }
         if frame >= first && frame < last {
             // The next frame with its remeshing and without differ by it alone.
-            let mut moved = |world: &mut World| -> Outcome<f64> {
+            let moved = |world: &mut World| -> Outcome<f64> {
                 let start = save(world);
                 let mut still = World::new(&fixed)?;
                 restore(&mut still, &start)?;

@@ -6,9 +6,6 @@ use crate::bench::program::{Measured, Simulation};
 use crate::bench::report::{Figure, Report};
 use crate::command::{Failure, say};
 
-/// Frames whose meshes are still on their way from those of the scene.
-const SETTLING: usize = 2;
-
 pub(super) fn run(context: &Context, report: &mut Report, scene: &Scene) -> Result<(), Failure> {
     let quick = usize::from(context.options.quick);
     let (frames, fixed_frames) = (scene.frames[quick], scene.fixed_frames[quick]);
@@ -36,21 +33,18 @@ pub(super) fn run(context: &Context, report: &mut Report, scene: &Scene) -> Resu
         None
     };
     let name = |what: &str| format!("view.{}.{what}", scene.name);
-    let skip = SETTLING.min(frames - 1);
     let [of_adaptive, of_view] = [&adaptive, &view].map(|run| run.info.each("/seconds/total"));
-    let mean = |seconds: &[f64]| seconds.iter().sum::<f64>() / seconds.len() as f64;
-    let (slow, fast) = (mean(&of_adaptive[skip..]), mean(&of_view[skip..]));
+    let fast = view.cpu_s / frames as f64;
     let note = format!(
-        "Seconds a frame of the adaptive run over those of the view-dependent one, frames {} to \
-         {frames}, one thread.{}",
-        skip + 1,
+        "CPU seconds of the adaptive run over those of the view-dependent one, whole processes over \
+         {frames} frames, one thread.{}",
         view.info.troubles()
     );
-    report.add(&name("speedup"), Figure::exact(slow / fast, "1", &note));
+    report.add(&name("speedup"), Figure::exact(adaptive.cpu_s / view.cpu_s, "1", &note));
     if let Some(fixed) = &fixed {
-        let seconds = fixed.info.mean("/seconds/total");
+        let seconds = fixed.cpu_s / fixed_frames as f64;
         let note = format!(
-            "Seconds a frame on a fixed mesh with edges of {} m, over frames 1 to {fixed_frames} \
+            "CPU seconds a frame on a fixed mesh with edges of {} m, over frames 1 to {fixed_frames} \
              alone, over those of the view-dependent run.",
             scene.finest
         );
