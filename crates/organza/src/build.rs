@@ -9,12 +9,14 @@ pub(crate) use piece::Piece;
 use crate::contact::ContactSettings;
 use crate::handles::Handles;
 use crate::obstacle::Obstacle;
-use crate::scene::{self, Loaded, limits};
+use crate::scene::{self, Loaded, MeshSource, Scene, limits};
 use cloth_dynamics::Fabric;
 use cloth_dynamics::law::NotPositive;
+use mannequin::MannequinError;
 use mesh_core::generate::GenerateError;
 use mesh_core::obj::ObjError;
 use mesh_core::{ClothState, Material2, Mesh, MeshError, World3};
+use nalgebra::Similarity3;
 
 /// Why a scene that reads well cannot be built.
 #[derive(Debug, thiserror::Error)]
@@ -34,6 +36,14 @@ pub enum BuildError {
         cloth: String,
         /// What is wrong.
         source: GenerateError,
+    },
+    /// There is no such garment.
+    #[error("cloth `{cloth}`: {source}")]
+    Garment {
+        /// Name of the cloth.
+        cloth: String,
+        /// What is wrong.
+        source: MannequinError,
     },
     /// The mesh is not usable.
     #[error("cloth `{cloth}`: {source}")]
@@ -117,10 +127,11 @@ pub struct Built {
 pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
     let scene = &loaded.scene;
     let mut joined = Joined::default();
+    let mut wardrobe = piece::Wardrobe::default();
     let (mut fabrics, mut garments, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
     let (mut handles, mut first_vertices) = (Handles::default(), Vec::new());
     for (index, cloth) in scene.cloths.iter().enumerate() {
-        let piece = piece::piece(cloth, loaded)?;
+        let piece = piece::piece(cloth, loaded, &mut wardrobe)?;
         let first = fabrics.len() as u32;
         fabrics.extend(fabrics_of_panels(cloth, &piece, &mut warnings)?);
         let (panels, thickness) = (first..fabrics.len() as u32, cloth.thickness_m);
@@ -137,7 +148,7 @@ pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
                 .add(number, handle, &piece, first_vertex)
                 .map_err(|message| BuildError::Handle { handle: number, message })?;
         }
-        joined.add(cloth, &piece, first);
+        joined.add(cloth, &place(cloth, scene), &piece, first);
     }
     let Joined { triangles, material, panels, positions, velocities } = joined;
     let panel_of = panels.clone();
@@ -185,6 +196,17 @@ fn fabrics_of_panels(
     Ok(fabrics)
 }
 
+/// Where a cloth starts: a garment on its character.
+fn place(cloth: &scene::Cloth, scene: &Scene) -> Similarity3<f64> {
+    let own = cloth.transform.similarity();
+    let MeshSource::Garment(garment) = &cloth.mesh else { return own };
+    let wearer = scene.obstacles.iter().find(|obstacle| obstacle.name == garment.on);
+    wearer.map_or(own, |body| {
+        let moved = body.motion.as_ref().map_or_else(Similarity3::identity, |m| m.at(0.0));
+        moved * body.transform.similarity() * own
+    })
+}
+
 /// The common mesh while it is put together.
 #[derive(Default)]
 struct Joined {
@@ -196,13 +218,18 @@ struct Joined {
 }
 
 impl Joined {
-    fn add(&mut self, cloth: &scene::Cloth, piece: &Piece, first_panel: u32) {
+    fn add(
+        &mut self,
+        cloth: &scene::Cloth,
+        place: &Similarity3<f64>,
+        piece: &Piece,
+        first_panel: u32,
+    ) {
         let first = self.positions.len() as u32;
         self.triangles.extend(piece.mesh.triangles().iter().map(|t| t.map(|i| i + first)));
-        let scale = cloth.transform.scale;
+        let scale = place.scaling();
         self.material.extend(piece.mesh.material().iter().map(|u| u.map(|u| u * scale)));
         self.panels.extend(piece.mesh.panels().iter().map(|p| p + first_panel));
-        let place = cloth.transform.similarity();
         let velocity = World3::from(cloth.initial_velocity);
         for x in &piece.positions {
             let x = place.transform_point(&(*x).into()).coords;

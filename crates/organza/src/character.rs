@@ -3,17 +3,19 @@
 //! Read are all triangles of a file's default scene (its first where it names none, all nodes where
 //! it has none), node hierarchies, skins with any number of joints per vertex, and one animation of
 //! translations, rotations and scales, by steps, lines or cubic splines. Vertices that agree in place
-//! and joints are one; triangles that have no area for that reason are left out. Materials, cameras
-//! and the like are ignored. Morph targets and compressed meshes are refused.
+//! and joints are one; triangles that have no area for that reason are left out. Materials
+//! and the like are ignored; cameras are read on their own. Morph targets and compressed meshes are refused.
 //!
 //! Positions are in the file's frame: metres, y up.
 
 mod accessor;
+mod camera;
 mod channel;
 mod container;
 mod read;
 mod vertices;
 
+pub(crate) use camera::read_camera;
 pub(crate) use container::{Container, buffer_files};
 pub(crate) use read::read;
 
@@ -95,20 +97,26 @@ impl Character {
 
     /// The maps of the bones at a time of the animation (s).
     fn bones_at(&self, time: f64) -> Vec<Matrix4<f64>> {
-        let mut locals: Vec<Local> = self.nodes.iter().map(|node| node.rest.clone()).collect();
-        for channel in &self.channels {
-            if let Local::Pose(pose) = &mut locals[channel.node] {
-                channel.apply(time, pose);
-            }
-        }
-        let mut global = vec![Matrix4::identity(); self.nodes.len()];
-        for &k in &self.order {
-            let local = match &locals[k] {
-                Local::Pose(pose) => pose.matrix(),
-                Local::Matrix(matrix) => *matrix,
-            };
-            global[k] = self.nodes[k].parent.map_or(local, |parent| global[parent] * local);
-        }
+        let global = globals(&self.nodes, &self.order, &self.channels, time);
         self.bones.iter().map(|bone| global[bone.node] * bone.inverse_bind).collect()
     }
+}
+
+/// The transforms of all nodes at a time of the animation (s).
+fn globals(nodes: &[Node], order: &[usize], channels: &[Channel], time: f64) -> Vec<Matrix4<f64>> {
+    let mut locals: Vec<Local> = nodes.iter().map(|node| node.rest.clone()).collect();
+    for channel in channels {
+        if let Local::Pose(pose) = &mut locals[channel.node] {
+            channel.apply(time, pose);
+        }
+    }
+    let mut global = vec![Matrix4::identity(); nodes.len()];
+    for &k in order {
+        let local = match &locals[k] {
+            Local::Pose(pose) => pose.matrix(),
+            Local::Matrix(matrix) => *matrix,
+        };
+        global[k] = nodes[k].parent.map_or(local, |parent| global[parent] * local);
+    }
+    global
 }

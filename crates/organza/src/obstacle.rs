@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use mannequin::Mannequin;
 use mesh_core::World3;
 use mesh_core::generate::Surface;
 use nalgebra::{Point3, Similarity3};
@@ -61,6 +62,8 @@ pub enum Shape {
     Frames(Frames),
     /// With nodes and joints.
     Character(Character),
+    /// As a mannequin.
+    Mannequin(Mannequin),
 }
 
 impl From<Surface> for Shape {
@@ -103,6 +106,7 @@ impl Shape {
             Shape::Rigid(surface) => &surface.triangles,
             Shape::Frames(frames) => &frames.triangles,
             Shape::Character(character) => character.triangles(),
+            Shape::Mannequin(mannequin) => mannequin.triangles(),
         }
     }
 
@@ -111,6 +115,7 @@ impl Shape {
             Shape::Rigid(surface) => surface.positions.len(),
             Shape::Frames(frames) => frames.positions[0].len(),
             Shape::Character(character) => character.n_vertices(),
+            Shape::Mannequin(mannequin) => mannequin.n_vertices(),
         }
     }
 
@@ -119,6 +124,7 @@ impl Shape {
             Shape::Rigid(_) => false,
             Shape::Frames(frames) => frames.positions.windows(2).any(|pair| pair[0] != pair[1]),
             Shape::Character(character) => character.is_moving(),
+            Shape::Mannequin(mannequin) => mannequin.is_moving(),
         }
     }
 }
@@ -240,6 +246,7 @@ impl Obstacle {
             Shape::Rigid(surface) => surface.positions.clone(),
             Shape::Frames(frames) => placed(&self.place, &frames.at(time)),
             Shape::Character(character) => placed(&self.place, &character.positions(time)),
+            Shape::Mannequin(mannequin) => placed(&self.place, &mannequin.positions(time)),
         }
     }
 

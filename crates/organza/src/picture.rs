@@ -2,10 +2,12 @@
 
 mod error;
 mod paint;
+mod sight;
 mod view;
 
 pub use error::PictureError;
-pub use paint::{Colouring, STRETCH_RANGE};
+pub use paint::{Colouring, SIZE_RANGE_M, STRETCH_RANGE};
+pub use sight::Sight;
 pub use view::{View, viewpoint};
 
 use std::fs::File;
@@ -17,7 +19,7 @@ use io_mcap::{OwnedFrame, Recording};
 use crate::export::{NumberedFiles, Written, selected};
 use crate::record::{FrameRange, RunError, up};
 use crate::render::{
-    Bounds, Image, Layer, Paint, RenderError, Size, Style, Surface, Viewpoint, draw_with,
+    Bounds, Image, Layer, Lines, Paint, RenderError, Size, Style, Surface, Viewpoint, draw_with,
 };
 
 /// Size of pictures where nothing else is said.
@@ -34,9 +36,19 @@ pub struct PictureOptions {
     pub wireframe: bool,
     /// What the colours show.
     pub colouring: Colouring,
+    /// Whether the frustum of the scene's camera is drawn.
+    pub frustum: bool,
 }
 
-/// Draws the garments of a frame, and its obstacles in grey.
+impl PictureOptions {
+    /// Whether pictures depend on what the cameras of the scene see.
+    fn looks(&self) -> bool {
+        self.frustum || matches!(self.colouring, Colouring::View | Colouring::Visibility)
+    }
+}
+
+/// Draws the garments of a frame, and its obstacles in grey. What depends on cameras needs `sight`, and
+/// is left out without.
 ///
 /// # Errors
 /// See [`crate::render::draw`].
@@ -46,8 +58,11 @@ pub fn draw_frame(
     size: Size,
     options: &PictureOptions,
     style: &Style,
+    sight: Option<&Sight>,
 ) -> Result<Image, RenderError> {
-    let paints: Vec<_> = frame.garments.iter().map(|g| options.colouring.of(g)).collect();
+    let paint = |garment| options.colouring.of(garment, frame.index, sight);
+    let paints: Vec<_> = frame.garments.iter().map(paint).collect();
+    let edges = sight.filter(|_| options.frustum).map(|sight| sight.frustum(frame));
     let garments = frame.garments.iter().zip(&paints).map(|(garment, paint)| Surface {
         points: &garment.points,
         triangles: &garment.triangles,
@@ -58,7 +73,8 @@ pub fn draw_frame(
         paint: Paint::OBSTACLE,
         ..Surface::new(&obstacle.points, &obstacle.triangles)
     });
-    let layers: Vec<Layer<'_>> = garments.chain(obstacles).map(Layer::Surface).collect();
+    let mut layers: Vec<Layer<'_>> = garments.chain(obstacles).map(Layer::Surface).collect();
+    layers.extend(edges.iter().map(|edges| Layer::Lines(Lines::new(edges))));
     draw_with(&layers, viewpoint, size, style)
 }
 
@@ -81,14 +97,16 @@ pub fn render(
     let mut recording = Recording::open(path).map_err(RunError::recording(path))?;
     let frames = selected(&recording, path, range)?;
     let up = up(&recording);
-    let bounds = bounds(&mut recording, path)?;
+    let sight = options.looks().then(|| Sight::of(&mut recording, path)).transpose()?;
+    let bounds = bounds(&mut recording, path, sight.as_ref().filter(|_| options.frustum))?;
     let style = Style { floor: bounds.lowest(up), ..Style::default() };
     let mut files = None;
     for (k, &index) in frames.iter().enumerate() {
         let frame = recording.frame(index).map_err(RunError::recording(path))?;
         let (viewpoint, size) = viewpoint(&frame, bounds.corners(), up, options)
             .ok_or_else(|| PictureError::NoCamera { path: path.to_owned(), frame: index })?;
-        let png = draw_frame(&frame, &viewpoint, size, options, &style)?.encode_png()?;
+        let png = draw_frame(&frame, &viewpoint, size, options, &style, sight.as_ref())?;
+        let png = png.encode_png()?;
         // Only now: what cannot be drawn leaves no folder behind.
         let files = match &files {
             Some(files) => files,
@@ -123,16 +141,21 @@ pub fn write_poster(path: &Path, poster: &Path) -> Result<(), PictureError> {
     let style = Style { floor: Bounds::of(points()).lowest(up), ..Style::default() };
     let (viewpoint, size) = viewpoint(&frame, points(), up, &options)
         .ok_or_else(|| PictureError::NoCamera { path: path.to_owned(), frame: last })?;
-    Ok(draw_frame(&frame, &viewpoint, size, &options, &style)?.write_png(poster)?)
+    Ok(draw_frame(&frame, &viewpoint, size, &options, &style, None)?.write_png(poster)?)
 }
 
-/// The box around everything in a recording.
-fn bounds(recording: &mut Recording<File>, path: &Path) -> Result<Bounds, RunError> {
+/// The box around everything in a recording, with the frustums where `sight` shows them.
+fn bounds(
+    recording: &mut Recording<File>,
+    path: &Path,
+    sight: Option<&Sight>,
+) -> Result<Bounds, RunError> {
     let mut bounds = Bounds::EMPTY;
     let indices: Vec<u64> = recording.frames().map(|frame| frame.index).collect();
     for index in indices {
         let frame = recording.frame(index).map_err(RunError::recording(path))?;
         bounds.extend(points(&frame));
+        bounds.extend(sight.iter().flat_map(|sight| sight.frustum(&frame)).flatten());
     }
     Ok(bounds)
 }

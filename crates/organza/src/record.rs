@@ -35,8 +35,8 @@ pub use garments::{PALETTE, garments};
 pub use obstacles::obstacles;
 pub use range::{FrameRange, RangeError};
 pub use resume::{Resumed, resume, resume_with};
-pub use settings::Settings;
 pub(crate) use settings::{OBSTACLES, up};
+pub use settings::{Settings, scene_of};
 
 use std::path::{Path, PathBuf};
 

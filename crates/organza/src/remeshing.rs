@@ -2,15 +2,16 @@
 
 use crate::build::Garment;
 use crate::contact::Obstacles;
+use crate::obstacle::Obstacle;
 use crate::obstacle_sizing;
 use crate::report::ViewSummary;
-use crate::scene::Scene;
-use mesh_core::{ClothState, Mesh};
+use crate::scene::{self, Scene};
+use mesh_core::{ClothState, Mesh, par};
 use remesh::{
     CornerMetrics, PerPanel, PhysicalSizing, RemeshError, RemeshReport, RemeshSettings,
     SizingField, adapt,
 };
-use sizing_view::{CameraPath, ViewFactors, ViewSettings, ViewSizing, window};
+use sizing_view::{CameraPath, DepthBuffer, Sample, ViewFactors, ViewSizing, window};
 use std::time::Instant;
 
 /// Principal stretches that edits may leave in cloth without strain limits (1): more strain than this
@@ -105,8 +106,8 @@ impl Remeshing {
         self.obstacle_angles.is_some()
     }
 
-    /// Remeshes for the frame at `time` (s), around the vertices `hold` by splits alone, between
-    /// obstacles that keep a distance (m) from cloth.
+    /// Remeshes for the frame at `time` (s), around the vertices `hold` by splits alone. `obstacles` are
+    /// in the way of cameras; `bodies` are those that cloth keeps a distance (m) from.
     ///
     /// # Errors
     /// If a setting is out of range.
@@ -114,14 +115,15 @@ impl Remeshing {
         &self,
         cloth: &mut ClothState,
         time: f64,
+        obstacles: &[Obstacle],
         keep: &[u64],
         hold: &[u64],
-        obstacles: Option<(&Obstacles, f64)>,
+        bodies: Option<(&Obstacles, f64)>,
     ) -> Result<Remeshed, RemeshError> {
         let mut clock = Instant::now();
         let mut lap = || std::mem::replace(&mut clock, Instant::now()).elapsed().as_secs_f64();
         let obstacle =
-            self.obstacle_angles.as_ref().zip(obstacles).map(|(angles, (bodies, room))| {
+            self.obstacle_angles.as_ref().zip(bodies).map(|(angles, (bodies, room))| {
                 let angle = |panel: u32| angles[panel as usize];
                 obstacle_sizing::metrics(cloth, bodies, time, OBSTACLE_REACH * room, angle)
             });
@@ -136,7 +138,7 @@ impl Remeshing {
             hold,
             obstacle: obstacle.as_deref(),
         };
-        let factors = self.view.as_ref().map(|view| view.factors(cloth, time));
+        let factors = self.view.as_ref().map(|view| view.factors(cloth, time, obstacles));
         let view_s = if factors.is_some() { lap() } else { 0.0 };
         let mut metrics = match &factors {
             None => CornerMetrics::evaluate(cloth, &*self.sizing, &settings)?,
@@ -167,21 +169,65 @@ pub struct Remeshed {
 
 /// What mesh sizes take of a camera.
 struct View {
-    path: CameraPath,
-    settings: ViewSettings,
+    /// All cameras, that of the scene first.
+    paths: Vec<CameraPath>,
+    view: scene::View,
+    /// Surfaces nearer to each other than this do not hide each other (m).
+    thickness: f64,
     frame_s: f64,
 }
 
+/// Rows of the pictures in which occlusion is found: hands are wider than their pixels.
+const DEPTH_ROWS: u32 = 180;
+/// Thickness of garments with their folds, which is not told hidden from seen (m).
+const LAYERS: f64 = 0.02;
+
 impl View {
     fn new(scene: &Scene) -> Option<View> {
-        let path = scene.camera_path.clone()?;
-        Some(View { path, settings: scene.view?, frame_s: scene.frame_s() })
+        let view = scene.view.clone()?;
+        let paths = std::iter::once(scene.camera_path.clone()?).chain(view.more_cameras.clone());
+        let thickness = LAYERS.max(2.0 * scene.contact.map_or(0.0, |contact| contact.thickness));
+        Some(View { paths: paths.collect(), view, thickness, frame_s: scene.frame_s() })
     }
 
-    fn factors(&self, cloth: &ClothState, time: f64) -> ViewFactors {
-        let samples = window(&self.path, time, self.frame_s, &self.settings);
-        let factors = ViewFactors::evaluate(cloth, &samples, &self.settings);
+    fn factors(&self, cloth: &ClothState, time: f64, obstacles: &[Obstacle]) -> ViewFactors {
+        let settings = &self.view.settings;
+        let windows = self.paths.iter().map(|path| window(path, time, self.frame_s, settings));
+        let mut samples: Vec<Sample> = windows.flatten().collect();
+        if self.view.occlusion {
+            let depths = self.depths(cloth, time, obstacles, &samples);
+            for (sample, depth) in samples.iter_mut().zip(depths) {
+                sample.depth = depth;
+            }
+        }
+        let factors = ViewFactors::evaluate(cloth, &samples, settings);
         factors.expect("a window has its camera, and the scene's settings have been checked")
+    }
+}
+
+impl View {
+    /// What stands in the way of every sample: cloth and obstacles where they are now, as the cloth is
+    /// held fixed over the window (Koh2014 Eq. (4)). None for cameras that have no depth buffer.
+    fn depths(
+        &self,
+        cloth: &ClothState,
+        time: f64,
+        obstacles: &[Obstacle],
+        samples: &[Sample],
+    ) -> Vec<Option<DepthBuffer>> {
+        let there = obstacles.iter().filter(|obstacle| obstacle.is_there(time));
+        let bodies: Vec<_> = there.map(|o| (&o.triangles, o.positions(time))).collect();
+        let mut depths = vec![None; samples.len()];
+        par::fill(&mut depths, |k| {
+            let mut depth =
+                DepthBuffer::new(&samples[k].camera, DEPTH_ROWS, self.thickness).ok()?;
+            cloth.mesh.triangle_ids().for_each(|t| depth.draw(&cloth.corners(t)));
+            for (triangles, x) in &bodies {
+                triangles.iter().for_each(|t| depth.draw(&t.map(|v| x[v as usize])));
+            }
+            Some(depth)
+        });
+        depths
     }
 }
 

@@ -254,10 +254,10 @@ impl World {
             let saved = self.contact.is_some().then(|| self.cloth.clone());
             let is_tangled = self.tangled.matters();
             let tangled_before = if is_tangled { self.contour_length(frame) } else { 0.0 };
-            let obstacles = self.bodies.surface.as_ref().zip(self.contact.map(|c| c.thickness));
+            let bodies = self.bodies.surface.as_ref().zip(self.contact.map(|c| c.thickness));
             let run = |cloth: &mut ClothState, hold: &[u64]| {
                 let time = frame as f64 * self.frame_s;
-                remeshing.run(cloth, time, &keep, hold, obstacles).map_err(error)
+                remeshing.run(cloth, time, &self.obstacles, &keep, hold, bodies).map_err(error)
             };
             let mut done = run(&mut self.cloth, &[])?;
             if let Some(saved) = saved {

@@ -114,3 +114,61 @@ fn pinch_leaves_less_room_than_the_cloth_wants() {
     // They are what holds it when its corners are let go.
     assert!(loaded.scene.handles[0].end_s > 1.2);
 }
+
+/// Coarse garments that stay as they are, so that the first frames of the scenes with characters cost
+/// little.
+fn coarse(cloths: &[&str]) -> Vec<String> {
+    let coarse = |cloth: &&str| {
+        [format!("{cloth}.mesh.garment.cell_m=0.06"), format!("{cloth}.remeshing.size_m.min=0.05")]
+    };
+    cloths.iter().flat_map(coarse).collect()
+}
+
+fn own_coarse(name: &str, cloths: &[&str], sets: &[&str]) -> Loaded {
+    let all = coarse(cloths);
+    let all: Vec<&str> = all.iter().map(String::as_str).chain(sets.iter().copied()).collect();
+    own(name, &all)
+}
+
+#[test]
+fn dancers_and_karate_start_dressed_and_stay_so() {
+    for (name, cloths, panels) in [
+        ("dancer.json5", &["cloths[0]"][..], 4),
+        ("jump-cut.json5", &["cloths[0]"], 4),
+        ("distance.json5", &["cloths[0]"], 4),
+        ("karate.json5", &["cloths[0]", "cloths[1]"], 10),
+    ] {
+        let sets = ["cloths[0].remeshing.size_m.max=0.1", "view.size_min_px=0"];
+        let loaded = own_coarse(name, cloths, &sets);
+        assert_eq!(World::new(&loaded).unwrap().crossings(0), None, "{name}");
+        let world = after(&loaded, 3);
+        assert_eq!(world.cloth.densities().len(), panels, "{name}");
+        let [body] = &world.obstacles[..] else { panic!("{name}") };
+        assert!(body.is_moving());
+        // It is worn: around the body between knees and shoulders.
+        let middle = middle(&world.cloth.x);
+        assert!(middle.xy().norm() < 0.1 && (0.6..1.3).contains(&middle.z), "{name}: {middle}");
+        assert!(loaded.scene.view.is_some());
+    }
+}
+
+#[test]
+fn cuts_are_where_the_scenes_say() {
+    let cuts = |name: &str| own(name, &[]).scene.camera_path.unwrap().shots().len() - 1;
+    assert_eq!([cuts("karate.json5"), cuts("jump-cut.json5"), cuts("dancer.json5")], [3, 1, 0]);
+    // Eight times the distance.
+    let path = own("distance.json5", &[]).scene.camera_path.unwrap();
+    let far = |time: f64| path.at(time).position().xy().norm();
+    assert!((far(6.0) / far(0.0) - 8.0).abs() < 1e-9);
+}
+
+#[test]
+fn groups_have_as_many_as_wanted() {
+    let dancers = own("dancers.json5", &[]);
+    assert_eq!((dancers.scene.cloths.len(), dancers.scene.obstacles.len()), (10, 10));
+    let crowd = own("crowd.json5", &["crowd.count=7"]);
+    assert_eq!((crowd.scene.cloths.len(), crowd.scene.obstacles.len()), (7, 7));
+    let cloths = ["crowd.cloths[0]", "crowd.cloths[1]", "crowd.cloths[2]"];
+    let world = after(&own_coarse("crowd.json5", &cloths, &["crowd.count=3"]), 2);
+    assert_eq!(world.garments.len(), 3);
+}

@@ -69,7 +69,7 @@ fn gravity_wind_camera() {
 
 #[test]
 fn meshes() {
-    let none = "must have exactly one of obj, grid, disc, tube, skirt, tunic, poncho; has";
+    let none = "must have exactly one of obj, grid, disc, tube, skirt, tunic, poncho, garment; has";
     whole_cloth_complains(
         "mesh: {}, fabric: 'swim'",
         &[&format!("s.json5:2:8: cloths[0].mesh: {none} 0")],

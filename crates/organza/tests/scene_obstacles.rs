@@ -151,7 +151,7 @@ fn bad_obstacles_are_complained_of_at_their_place() {
     );
     obstacle(
         "mesh: {}",
-        "s.json5:2:8: obstacles[0].mesh: must have exactly one of obj, obj_sequence, gltf, sphere, box, plane, capsule, torus; has 0",
+        "s.json5:2:8: obstacles[0].mesh: must have exactly one of obj, obj_sequence, gltf, character, sphere, box, plane, capsule, torus; has 0",
     );
     obstacle(
         "mesh: {obj: 'b.obj'}",

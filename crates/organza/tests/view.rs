@@ -91,7 +91,7 @@ fn mistakes_are_named_with_their_place() {
         (&*format!("{OVER} view: {{v_back: 2}},"), "v_back is 2"),
         (&*format!("{OVER} view: {{v_out: 0.5}},"), "v_out is 0.5"),
         (&*format!("{OVER} view: {{widow_frames: 4}},"), "widow_frames"),
-        (&*format!("{OVER} shots: [{{keyframes: []}}],"), "shot 0"),
+        (&*format!("{OVER} shots: [{{keyframes: []}}],"), "exactly one of keyframes, gltf"),
         (
             &*format!(
                 "{OVER} shots: [{{keyframes: [{{time_s: 0, position: [0, 0, 0], target: [0, 0, 0]}}]}}],"

@@ -44,6 +44,12 @@ impl Figure {
         Figure::made(Of::Things, mean(values), values, unit, note)
     }
 
+    /// The root mean square of different things; `None` if there are none.
+    pub(super) fn rms(values: &[f64], unit: &'static str, note: &str) -> Option<Figure> {
+        let squares: Vec<f64> = values.iter().map(|x| x * x).collect();
+        Figure::told(mean(&squares).map(f64::sqrt), values, unit, Of::Different, note)
+    }
+
     /// A number that every repetition would give again: no times, nor what is made of times.
     pub(super) fn exact(value: f64, unit: &'static str, note: &str) -> Option<Figure> {
         Figure::made(Of::Once, Some(value), &[value], unit, note)

@@ -32,6 +32,7 @@ mod stiff;
 mod surface;
 mod table;
 mod told_by_tests;
+mod view;
 
 use crate::command::{Command, Failure, say};
 use options::Options;
@@ -62,6 +63,7 @@ struct Benchmark {
 const BENCHMARKS: &[Benchmark] = &[
     flag::BENCHMARK,
     contact::BENCHMARK,
+    view::BENCHMARK,
     pareto::BENCHMARK,
     stability::BENCHMARK,
     stiff::BENCHMARK,

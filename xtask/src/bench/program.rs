@@ -14,6 +14,8 @@ use std::time::Duration;
 #[derive(Clone, Debug)]
 pub(super) struct Program {
     path: PathBuf,
+    /// Folder of the workspace.
+    root: PathBuf,
 }
 
 /// A simulation to run.
@@ -64,7 +66,7 @@ impl Program {
             return Err(Failure::Unable("the program does not build".into()));
         }
         executable(&String::from_utf8_lossy(&cargo.stdout))
-            .map(|path| Program { path })
+            .map(|path| Program { path, root: root.to_owned() })
             .ok_or_else(|| Failure::Unable("cargo names no binary `organza`".into()))
     }
 
@@ -170,6 +172,17 @@ impl Program {
             return Err(Failure::Unable(told.trim().to_owned()));
         }
         Ok(told.lines().filter_map(|l| l.strip_prefix("warning: ")).map(str::to_owned).collect())
+    }
+
+    /// What an example of the program's crate prints, built first if need be.
+    ///
+    /// # Errors
+    /// If it does not build or fails.
+    pub(super) fn example(&self, name: &str, arguments: &[String]) -> Result<String, Failure> {
+        let mut command = Command::new("cargo");
+        command.args(["run", "--release", "--quiet", "--package", "organza", "--example", name]);
+        command.arg("--").args(arguments).current_dir(&self.root);
+        self.output(&mut command)
     }
 
     fn output(&self, command: &mut Command) -> Result<String, Failure> {

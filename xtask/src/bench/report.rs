@@ -73,6 +73,11 @@ impl Report {
         self.put(name, Content::Table(table));
     }
 
+    /// The value of a figure that has been added.
+    pub(super) fn value(&self, name: &str) -> Option<f64> {
+        self.figures().find(|(other, _)| *other == name).map(|(_, figure)| figure.value)
+    }
+
     /// Adds a sentence on what was left out.
     pub(super) fn remark(&mut self, remark: &str) {
         self.remarks.push((self.part.clone(), remark.to_owned()));

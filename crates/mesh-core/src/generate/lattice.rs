@@ -17,13 +17,17 @@ pub enum Diagonal {
 
 /// A lattice of `cells[0]` columns and `cells[1]` rows of cells.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lattice {
-    pub(super) cells: [usize; 2],
+pub struct Lattice {
+    /// Columns and rows.
+    pub cells: [usize; 2],
 }
 
 impl Lattice {
     /// A lattice that is neither empty nor absurdly large.
-    pub(super) fn new(cells: [usize; 2]) -> Result<Lattice, GenerateError> {
+    ///
+    /// # Errors
+    /// If it is one of both.
+    pub fn new(cells: [usize; 2]) -> Result<Lattice, GenerateError> {
         check_count("columns of cells", cells[0], 1)?;
         check_count("rows of cells", cells[1], 1)?;
         check_triangles(&[2, cells[0], cells[1]])?;
@@ -31,18 +35,18 @@ impl Lattice {
     }
 
     /// The vertex in column line `i` and row line `j`.
-    pub(super) fn vertex(&self, i: usize, j: usize) -> VertexId {
+    pub fn vertex(&self, i: usize, j: usize) -> VertexId {
         VertexId((j * (self.cells[0] + 1) + i) as u32)
     }
 
     /// The vertices of a row line.
-    pub(super) fn row(&self, j: usize) -> impl Iterator<Item = VertexId> + use<> {
+    pub fn row(&self, j: usize) -> impl Iterator<Item = VertexId> + use<> {
         let lattice = *self;
         (0..=self.cells[0]).map(move |i| lattice.vertex(i, j))
     }
 
     /// The vertices of a column line.
-    pub(super) fn column(&self, i: usize) -> impl Iterator<Item = VertexId> + use<> {
+    pub fn column(&self, i: usize) -> impl Iterator<Item = VertexId> + use<> {
         let lattice = *self;
         (0..=self.cells[1]).map(move |j| lattice.vertex(i, j))
     }
@@ -58,8 +62,12 @@ impl Lattice {
         ]
     }
 
-    /// The sheet with the given material and world coordinates (m) at every vertex (i, j).
-    pub(super) fn sheet(
+    /// The sheet with the given material and world coordinates (m) at every vertex (i, j). Borders:
+    /// `left`, `right`, `lower`, `upper`.
+    ///
+    /// # Errors
+    /// If the material coordinates make no mesh.
+    pub fn sheet(
         &self,
         diagonal: Diagonal,
         material: impl Fn(usize, usize) -> Material2,

@@ -25,7 +25,7 @@ pub use cuboid::cuboid;
 pub use disc::disc;
 pub use error::GenerateError;
 pub use grid::grid;
-pub use lattice::Diagonal;
+pub use lattice::{Diagonal, Lattice};
 pub use limits::{MAX_SIZE, MAX_TRIANGLES, MIN_SIZE};
 pub use sew::{Chain, Seam, Sewn, lay_out, sew};
 pub use skirt::{Skirt, skirt};

@@ -43,7 +43,7 @@ pub struct Sewn {
 
 impl Sewn {
     /// Names a part of the boundary, given by vertices of the sheets that were sewn.
-    pub(super) fn name_border(&mut self, name: &'static str, parts: &[Chain]) {
+    pub fn name_border(&mut self, name: &'static str, parts: &[Chain]) {
         let number = |part: &Chain| {
             let vertex_of = &self.vertex_of[part.sheet];
             part.vertices.iter().map(|v| vertex_of[v.index()]).collect::<Vec<_>>()

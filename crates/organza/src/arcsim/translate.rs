@@ -127,6 +127,7 @@ fn translate(
     notes.rename("recording", "organza.recording");
     let time = time?;
     Some(SceneFile {
+        crowd: None,
         schema: None,
         name: extras.name,
         frames: time.frames,

@@ -3,8 +3,9 @@
 use super::BuildError;
 use crate::character::{self, Container};
 use crate::obstacle::{Frames, Obstacle, Shape};
-use crate::scene::format::Gltf;
+use crate::scene::format::{Action, CharacterFile, Gltf};
 use crate::scene::{Loaded, ObstacleSource, Sequence, limits};
+use mannequin::{Mannequin, MannequinError};
 use mesh_core::World3;
 use mesh_core::generate::{self, Diagonal, GenerateError, Surface};
 use mesh_core::obj::{self, ObjMesh};
@@ -13,9 +14,10 @@ use mesh_core::obj::{self, ObjMesh};
 pub(super) fn obstacles(loaded: &Loaded) -> Result<Vec<Obstacle>, BuildError> {
     let mut obstacles: Vec<Obstacle> = Vec::new();
     let mut n_triangles = 0;
+    let mut bodies = Vec::new();
     for (index, body) in loaded.scene.obstacles.iter().enumerate() {
         let error = |message| BuildError::Obstacle { obstacle: index, message };
-        let shape = shape(&body.mesh, loaded).map_err(error)?;
+        let shape = shape(&body.mesh, loaded, &mut bodies).map_err(error)?;
         let motion = body.motion.as_ref();
         let name = body.name.as_str();
         let mut obstacle = Obstacle::new(name, shape, &body.transform, motion, body.friction)
@@ -31,8 +33,12 @@ pub(super) fn obstacles(loaded: &Loaded) -> Result<Vec<Obstacle>, BuildError> {
     Ok(obstacles)
 }
 
-/// Reads or makes the surface of an obstacle.
-fn shape(source: &ObstacleSource, loaded: &Loaded) -> Result<Shape, String> {
+/// Reads or makes the surface of an obstacle; `bodies` are the mannequins made so far.
+fn shape(
+    source: &ObstacleSource,
+    loaded: &Loaded,
+    bodies: &mut Vec<Mannequin>,
+) -> Result<Shape, String> {
     let generated = |surface: Result<Surface, GenerateError>| surface.map_err(|e| e.to_string());
     let surface = match source {
         ObstacleSource::Obj(file) => read_obj(file, loaded).map(|read| read.to_surface()),
@@ -40,6 +46,9 @@ fn shape(source: &ObstacleSource, loaded: &Loaded) -> Result<Shape, String> {
         ObstacleSource::Gltf(gltf) => {
             let read = character(gltf, loaded).map_err(|e| format!("{}: {e}", gltf.file));
             return read.map(Shape::Character);
+        }
+        ObstacleSource::Character(character) => {
+            return mannequin(character, bodies).map(Shape::Mannequin).map_err(|e| e.to_string());
         }
         ObstacleSource::Sphere(s) => generated(generate::sphere(s.radius_m, s.detail as usize)),
         ObstacleSource::Cuboid(b) => generated(generate::cuboid(b.size_m)),
@@ -59,6 +68,31 @@ fn shape(source: &ObstacleSource, loaded: &Loaded) -> Result<Shape, String> {
         }
     };
     surface.map(Shape::Rigid)
+}
+
+/// A mannequin, with the skin of one that has been made already if there is one like it.
+fn mannequin(
+    character: &CharacterFile,
+    bodies: &mut Vec<Mannequin>,
+) -> Result<Mannequin, MannequinError> {
+    let motion = mannequin::Motion {
+        action: match character.motion {
+            Action::Stand => mannequin::Action::Stand,
+            Action::Walk => mannequin::Action::Walk,
+            Action::Turn => mannequin::Action::Turn,
+            Action::Kick => mannequin::Action::Kick,
+            Action::Dance => mannequin::Action::Dance,
+        },
+        phase: character.phase,
+        seed: u64::from(character.seed),
+        start: character.start_s,
+        ease: character.ease_s,
+    };
+    if let Some(body) = bodies.iter().find(|body| body.cell() == character.cell_m) {
+        return body.moving(motion);
+    }
+    bodies.push(Mannequin::new(character.cell_m, motion)?);
+    Ok(bodies[bodies.len() - 1].clone())
 }
 
 fn read_obj(file: &str, loaded: &Loaded) -> Result<ObjMesh, String> {

@@ -1,8 +1,9 @@
 //! The mesh of one cloth: read from files or generated.
 
 use super::BuildError;
-use crate::scene::format::{Diagonal as SceneDiagonal, Skirt, Tunic};
+use crate::scene::format::{Diagonal as SceneDiagonal, GarmentKind, Skirt, Tunic};
 use crate::scene::{self, Dialect, Loaded, MeshSource, suggestion};
+use mannequin::{Garment, MannequinError};
 use mesh_core::generate::{self, Border, Diagonal, GenerateError, Sheet};
 use mesh_core::obj;
 use mesh_core::{Mesh, VertexId, World3};
@@ -31,11 +32,31 @@ impl Piece {
     }
 }
 
+/// Garments that have been made already, with the length of their edges (m): those of a crowd are made
+/// once.
+#[derive(Default)]
+pub(super) struct Wardrobe(Vec<(Garment, f64, Sheet)>);
+
+impl Wardrobe {
+    fn get(&mut self, garment: Garment, cell: f64) -> Result<Sheet, MannequinError> {
+        if let Some((.., sheet)) = self.0.iter().find(|(g, c, _)| (*g, *c) == (garment, cell)) {
+            return Ok(sheet.clone());
+        }
+        let sheet = garment.sheet(cell)?;
+        self.0.push((garment, cell, sheet.clone()));
+        Ok(sheet)
+    }
+}
+
 /// Panels of tunics, and the first two of ponchos.
 const GARMENT: [&str; 4] = ["front", "back", "right-sleeve", "left-sleeve"];
 
 /// Reads or makes the mesh of a cloth.
-pub(super) fn piece(cloth: &scene::Cloth, loaded: &Loaded) -> Result<Piece, BuildError> {
+pub(super) fn piece(
+    cloth: &scene::Cloth,
+    loaded: &Loaded,
+    wardrobe: &mut Wardrobe,
+) -> Result<Piece, BuildError> {
     let generated = |sheet: Result<Sheet, GenerateError>| match sheet {
         Ok(Sheet { mesh, positions, borders }) => {
             let n_panels = mesh.panels().iter().max().map_or(1, |&p| p as usize + 1);
@@ -47,6 +68,20 @@ pub(super) fn piece(cloth: &scene::Cloth, loaded: &Loaded) -> Result<Piece, Buil
         Err(source) => Err(BuildError::Generate { cloth: cloth.name.clone(), source }),
     };
     match &cloth.mesh {
+        MeshSource::Garment(worn) => {
+            let garment = match worn.kind {
+                GarmentKind::Dress => Garment::Dress,
+                GarmentKind::Skirt => Garment::Skirt,
+                GarmentKind::Trousers => Garment::Trousers,
+                GarmentKind::Jacket => Garment::Jacket,
+                GarmentKind::Belt => Garment::Belt,
+            };
+            let sheet = wardrobe.get(garment, worn.cell_m);
+            let Sheet { mesh, positions, borders } = sheet
+                .map_err(|source| BuildError::Garment { cloth: cloth.name.clone(), source })?;
+            let panels = garment.panels().iter().map(|&name| name.to_owned()).collect();
+            Ok(Piece { mesh, positions, vertex_of_file: None, borders, panels })
+        }
         MeshSource::Obj { obj: file, material_obj } => {
             let read = |file: &String| {
                 let bytes = loaded.source(file).unwrap_or_default();

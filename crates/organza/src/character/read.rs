@@ -89,7 +89,7 @@ fn check_reach(character: &Character) -> Result<(), String> {
 }
 
 /// All nodes with their parents, and an order in which parents come first.
-fn hierarchy(root: &Root) -> Result<(Vec<Node>, Vec<usize>), String> {
+pub(super) fn hierarchy(root: &Root) -> Result<(Vec<Node>, Vec<usize>), String> {
     let mut nodes = Vec::with_capacity(root.nodes.len());
     for (k, node) in root.nodes.iter().enumerate() {
         let rest = local(node).ok_or(format!("nodes[{k}]: its rotation is zero"))?;
@@ -174,7 +174,10 @@ fn skin_bones(file: &Container, skin: usize) -> Result<Vec<Bone>, String> {
 }
 
 /// The channels of the animation that is asked for.
-fn channels(file: &Container, wanted: Option<&AnimationRef>) -> Result<Vec<Channel>, String> {
+pub(super) fn channels(
+    file: &Container,
+    wanted: Option<&AnimationRef>,
+) -> Result<Vec<Channel>, String> {
     let animations = &file.root.animations;
     let index = match wanted {
         None if animations.is_empty() => return Ok(Vec::new()),

@@ -174,6 +174,9 @@ pub(crate) struct Render {
     /// Draw the edges of the mesh
     #[arg(long)]
     pub(crate) wireframe: bool,
+    /// Draw the frustum of the scene's camera; best with --view outside
+    #[arg(long)]
+    pub(crate) frustum: bool,
     /// What the colours show
     #[arg(long, value_enum, value_name = "COLOR", default_value_t = Color::Plain)]
     pub(crate) color: Color,
@@ -236,6 +239,12 @@ pub(crate) enum Color {
     Plain,
     /// Larger principal stretch: violet 0.95, green 1, yellow 1.05
     Stretch,
+    /// Size of triangles: violet 5 mm, yellow 200 mm
+    Size,
+    /// View factor of the scene's cameras: violet 0, yellow 1
+    View,
+    /// What the scene's camera sees: green its front, orange its back, grey what is outside
+    Visibility,
 }
 
 fn size(text: &str) -> Result<Size, String> {

@@ -18,7 +18,11 @@ pub(crate) fn run(args: &Render) -> Result<(), Failure> {
         colouring: match args.color {
             Color::Plain => Colouring::Plain,
             Color::Stretch => Colouring::Stretch,
+            Color::Size => Colouring::Size,
+            Color::View => Colouring::View,
+            Color::Visibility => Colouring::Visibility,
         },
+        frustum: args.frustum,
     };
     let range = files.frames.unwrap_or_default();
     let mut progress = None;

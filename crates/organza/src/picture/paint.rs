@@ -1,5 +1,6 @@
 //! What the colours of a picture show.
 
+use super::sight::{Seen, Sight};
 use cloth_dynamics::principal_stretches;
 use io_mcap::OwnedGarment;
 use mesh_core::{Material2, World3, geometry};
@@ -8,6 +9,12 @@ use crate::render::{Paint, Rgb, VIRIDIS};
 
 /// Stretches at the ends of the colour scale (1).
 pub const STRETCH_RANGE: [f64; 2] = [0.95, 1.05];
+
+/// Sizes at the ends of the colour scale (m); its steps are factors.
+pub const SIZE_RANGE_M: [f64; 2] = [0.005, 0.2];
+
+/// Colours of what is seen from the front, from the back, and not at all.
+const SEEN: [Rgb; 3] = [[66, 150, 96], [222, 150, 62], [120, 126, 148]];
 
 /// Colour of the back of all garments.
 const BACK: Rgb = [217, 182, 138];
@@ -21,6 +28,14 @@ pub enum Colouring {
     /// The larger principal stretch of every triangle, from dark violet at [`STRETCH_RANGE`]'s start
     /// over green at rest to yellow at its end.
     Stretch,
+    /// The size of every triangle, the side of a square of its area in the pattern, from dark violet at
+    /// [`SIZE_RANGE_M`]'s start to yellow at its end.
+    Size,
+    /// The view factor of every triangle, from dark violet at 0 to yellow at 1.
+    View,
+    /// Green for what the scene's camera sees, orange for what faces away in its picture, grey for what
+    /// is outside.
+    Visibility,
 }
 
 /// The colours of one garment.
@@ -31,14 +46,40 @@ pub(super) enum OwnedPaint {
 }
 
 impl Colouring {
-    pub(super) fn of(self, garment: &OwnedGarment) -> OwnedPaint {
-        match self {
-            Colouring::Plain => {
+    pub(super) fn of(
+        self,
+        garment: &OwnedGarment,
+        frame: u64,
+        sight: Option<&Sight>,
+    ) -> OwnedPaint {
+        match (self, sight) {
+            (Colouring::View, Some(sight)) => {
+                let factors = sight.factors(garment, frame);
+                OwnedPaint::Triangles(factors.iter().map(|&v| VIRIDIS.colour(v)).collect())
+            }
+            (Colouring::Visibility, Some(sight)) => {
+                let colour = |seen: &Seen| match seen {
+                    Seen::Front => SEEN[0],
+                    Seen::Back => SEEN[1],
+                    Seen::Outside => SEEN[2],
+                };
+                OwnedPaint::Triangles(sight.seen(garment, frame).iter().map(colour).collect())
+            }
+            (Colouring::Size, _) => {
+                let [low, high] = SIZE_RANGE_M.map(f64::ln);
+                let size = |u: &[[f64; 2]; 3]| {
+                    let [a, b, c] = u.map(Material2::from);
+                    0.5 * (0.5 * (b - a).perp(&(c - a)).abs()).ln()
+                };
+                let colour = |u| VIRIDIS.colour_in(size(u), low, high);
+                OwnedPaint::Triangles(garment.material.iter().map(colour).collect())
+            }
+            (Colouring::Plain | Colouring::View | Colouring::Visibility, _) => {
                 let [r, g, b, _] = garment.color;
                 // A float cast saturates: no colour can leave its range.
                 OwnedPaint::Sides { front: [r, g, b].map(|c| (255.0 * c).round() as u8) }
             }
-            Colouring::Stretch => {
+            (Colouring::Stretch, _) => {
                 let [low, high] = STRETCH_RANGE;
                 let colour = |stretch| VIRIDIS.colour_in(stretch, low, high);
                 OwnedPaint::Triangles(stretches(garment).map(colour).collect())
@@ -86,11 +127,14 @@ mod tests {
         let stretch: Vec<f64> = stretches(&garment).collect();
         assert!((stretch[0] - 1.1).abs() < 1e-15, "{stretch:?}");
         assert_eq!(
-            Colouring::Stretch.of(&garment),
+            Colouring::Stretch.of(&garment, 0, None),
             OwnedPaint::Triangles(vec![VIRIDIS.colour(1.0)])
         );
         garment.material[0][2] = [2.0, 0.0];
         assert!(stretches(&garment).all(f64::is_nan));
-        assert_eq!(Colouring::Stretch.of(&garment), OwnedPaint::Triangles(vec![VIRIDIS.undefined]));
+        assert_eq!(
+            Colouring::Stretch.of(&garment, 0, None),
+            OwnedPaint::Triangles(vec![VIRIDIS.undefined])
+        );
     }
 }

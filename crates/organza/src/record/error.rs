@@ -85,6 +85,7 @@ pub fn place(loaded: &Loaded, error: &BuildError) -> SceneErrors {
             (path, format!("{file}: {source}"))
         }
         BuildError::Generate { cloth, source } => (named(cloth, "mesh"), source.to_string()),
+        BuildError::Garment { cloth, source } => (named(cloth, "mesh"), source.to_string()),
         BuildError::Mesh { cloth, source } => (named(cloth, "mesh"), source.to_string()),
         BuildError::Panel { cloth, message } => (named(cloth, "panel_fabrics"), message.clone()),
         BuildError::Fabric { cloth, source } => (named(cloth, "fabric"), source.to_string()),

@@ -161,6 +161,18 @@ impl Settings {
     }
 }
 
+/// The scene that is attached to the recording at `path`, as it was run.
+///
+/// # Errors
+/// The recording cannot be read, or holds no scene.
+pub fn scene_of<R: Read + Seek>(
+    recording: &mut Recording<R>,
+    path: &Path,
+) -> Result<Loaded, RunError> {
+    let unusable = |what| RunError::Unusable { path: path.to_owned(), what };
+    Settings::of(recording).map_err(unusable)?.load(recording, path)
+}
+
 /// True if the recording was made by this version, whose bits are the ones that can be continued.
 pub(super) fn same_version<R: Read + Seek>(recording: &Recording<R>) -> Result<(), String> {
     let software = recording.software();

@@ -1,9 +1,9 @@
 //! A scene that has passed every check: defaults filled in, names and files resolved.
 
 use super::format::{
-    BendingModel, Camera, Capsule, Cuboid, Damping, Disc, Gltf, Grid, Integrator, LinearSolver,
-    Multipliers, Newton, Plane, Poncho, Recording, Remeshing, Select, Skirt, Sphere, Spin, Torus,
-    Tube, Tunic, Wind,
+    BendingModel, Camera, Capsule, CharacterFile, Cuboid, Damping, Disc, GarmentKind, Gltf, Grid,
+    Integrator, LinearSolver, Multipliers, Newton, Plane, Poncho, Recording, Remeshing, Select,
+    Skirt, Sphere, Spin, Torus, Tube, Tunic, Wind,
 };
 use super::motion::{Motion, Transform};
 use crate::contact::ContactSettings;
@@ -46,9 +46,20 @@ pub struct Scene {
     /// The camera over time; there if `camera` is.
     pub camera_path: Option<CameraPath>,
     /// Mesh sizes by what the camera sees; only where there is a camera.
-    pub view: Option<ViewSettings>,
+    pub view: Option<View>,
     /// What is recorded.
     pub recording: Recording,
+}
+
+/// Mesh sizes by what cameras see.
+#[derive(Debug, Clone, PartialEq)]
+pub struct View {
+    /// The constants.
+    pub settings: ViewSettings,
+    /// Whether what stands in the way counts.
+    pub occlusion: bool,
+    /// Cameras besides that of the scene.
+    pub more_cameras: Vec<CameraPath>,
 }
 
 impl Scene {
@@ -131,6 +142,19 @@ pub enum MeshSource {
     Tunic(Tunic),
     /// A poncho.
     Poncho(Poncho),
+    /// A garment that fits a character.
+    Garment(Garment),
+}
+
+/// A garment and who wears it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Garment {
+    /// Which garment.
+    pub kind: GarmentKind,
+    /// Name of the obstacle that wears it, which is a [`ObstacleSource::Character`].
+    pub on: String,
+    /// About how long the edges of the mesh are (m).
+    pub cell_m: f64,
 }
 
 /// Holds or moves vertices of a cloth.
@@ -182,6 +206,8 @@ pub enum ObstacleSource {
     Sequence(Sequence),
     /// A character with a skeleton, from a glTF file.
     Gltf(Gltf),
+    /// A mannequin.
+    Character(CharacterFile),
     /// A sphere.
     Sphere(Sphere),
     /// A box.

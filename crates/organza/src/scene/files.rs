@@ -82,6 +82,11 @@ impl<'r> Files<'r> {
         Ok(&self.sources[index].bytes)
     }
 
+    /// The content of a file that has been read.
+    pub(crate) fn get(&self, name: &str) -> Option<&[u8]> {
+        self.by_name.get(name).map(|&index| self.sources[index].bytes.as_slice())
+    }
+
     pub(crate) fn into_sources(self) -> Vec<Source> {
         self.sources
     }

@@ -13,6 +13,12 @@ pub const MAX_MOTION_BYTES: u64 = 256 << 20;
 pub const MAX_CLOTHS: usize = 10_000;
 /// Handles of a scene.
 pub const MAX_HANDLES: usize = 100_000;
+/// Cameras beside that of the scene.
+pub const MAX_VIEW_CAMERAS: usize = 100;
+/// Frames that cameras are followed beyond the end of a scene.
+pub const MAX_VIEW_WINDOW: f64 = 10_000.0;
+/// Characters of a crowd.
+pub const MAX_CROWD: usize = 1_000;
 /// Obstacles of a scene.
 pub const MAX_OBSTACLES: usize = 10_000;
 /// Coefficients of friction (1).

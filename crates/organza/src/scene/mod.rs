@@ -31,7 +31,9 @@ pub(crate) mod text;
 pub(crate) mod typed;
 pub(crate) mod unsupported;
 
-pub use data::{Cloth, Handle, MeshSource, Obstacle, ObstacleSource, Scene, Sequence};
+pub use data::{
+    Cloth, Garment, Handle, MeshSource, Obstacle, ObstacleSource, Scene, Sequence, View,
+};
 pub(crate) use files::Files;
 pub use files::{Dialect, FileError, FileRequest, Resolver, Source, from_disk, from_sources};
 pub use issue::{Issue, IssueKind, Origin, Position, SceneErrors};
@@ -135,7 +137,12 @@ pub fn parse(
     places.set_renames(renames.unwrap_or_default());
 
     let complaints = Complaints::default();
-    let mut context = Context { files: &mut files, complaints: &complaints, foreign: Vec::new() };
+    let mut context = Context {
+        files: &mut files,
+        complaints: &complaints,
+        foreign: Vec::new(),
+        in_crowd: false,
+    };
     let default_name = Path::new(name).file_stem().map_or(name.into(), |s| s.to_string_lossy());
     let scene = file.and_then(|file| resolve::resolve(file, &default_name, &mut context));
     let foreign = context.foreign;

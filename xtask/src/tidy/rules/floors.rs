@@ -18,6 +18,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("collision", 1),
     ("sph", 1),
     ("sph", 1),
+    ("mannequin", 1),
     ("sizing-view", 2),
     ("organza", 3),
     // Around the building: they may use everything and nothing uses them.

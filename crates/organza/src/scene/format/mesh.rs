@@ -1,10 +1,11 @@
 //! Where the mesh of a cloth comes from.
 
+use super::GarmentFile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Where the mesh of a cloth comes from: exactly one of `obj`, `grid`, `disc`, `tube`, `skirt`,
-/// `tunic`, `poncho`.
+/// `tunic`, `poncho`, `garment`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MeshFile {
@@ -25,6 +26,8 @@ pub struct MeshFile {
     pub tunic: Option<Tunic>,
     /// A poncho, sewn from a front and a back.
     pub poncho: Option<Poncho>,
+    /// A garment that fits a character and starts on it; `transform` comes before the character's.
+    pub garment: Option<GarmentFile>,
 }
 
 /// A flat rectangle: pattern (u, v) from (0, 0) to `size_m`, at (u, v, 0) in space.

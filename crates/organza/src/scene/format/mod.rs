@@ -1,6 +1,7 @@
 //! The scene format, key by key. These types are what a scene file may say; their comments are the
 //! published JSON schema. [`Scene`](super::Scene) is what a valid file means.
 
+mod character;
 mod cloth;
 mod handle;
 mod mesh;
@@ -8,6 +9,7 @@ mod obstacle;
 mod solver;
 mod view;
 
+pub use character::*;
 pub use cloth::*;
 pub use handle::*;
 pub use mesh::*;
@@ -67,6 +69,9 @@ pub struct SceneFile {
     /// Bodies that cloth cannot pass.
     #[serde(default)]
     pub obstacles: Vec<ObstacleFile>,
+    /// Characters in rows, with what they wear.
+    #[serde(default)]
+    pub crowd: Option<CrowdFile>,
     /// How things touch. Absent means that cloth does not touch cloth, and that obstacles, if there
     /// are any, are touched with the default numbers.
     #[serde(default)]
@@ -154,6 +159,12 @@ mod default {
     pub(super) fn friction() -> f64 {
         0.3
     }
+    pub(super) fn garment_cell_m() -> f64 {
+        0.035
+    }
+    pub(super) fn crowd_spacing_m() -> [f64; 2] {
+        [1.8, 1.8]
+    }
     pub(super) fn contact_thickness_m() -> f64 {
         0.005
     }
@@ -165,7 +176,14 @@ mod default {
     }
     pub(super) fn view() -> super::ViewFile {
         let sizing_view::ViewSettings {
-            v_back, v_out, margin, window, size_min_px, size_max, ..
+            v_back,
+            v_out,
+            v_hidden,
+            margin,
+            window,
+            size_min_px,
+            size_max,
+            ..
         } = sizing_view::ViewSettings::default();
         super::ViewFile {
             v_back,
@@ -174,6 +192,9 @@ mod default {
             window_frames: window,
             size_min_px,
             size_max_m: size_max,
+            occlusion: false,
+            v_hidden,
+            cameras: Vec::new(),
         }
     }
     pub(super) fn resolution() -> [u32; 2] {

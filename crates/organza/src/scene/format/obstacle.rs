@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::de::{Deserializer, Error, Visitor};
 use serde::{Deserialize, Serialize};
 
-use super::default;
+use super::{CharacterFile, default};
 use crate::scene::motion::{Motion, Transform};
 
 /// A body that cloth cannot pass. It moves as prescribed, whatever pushes it.
@@ -42,7 +42,7 @@ pub struct ObstacleFile {
 }
 
 /// Where the surface of an obstacle comes from: exactly one of `obj`, `obj_sequence`, `gltf`,
-/// `sphere`, `box`, `plane`, `capsule`, `torus`. Cloth is stopped on both sides of open surfaces.
+/// `character`, `sphere`, `box`, `plane`, `capsule`, `torus`. Cloth is stopped on both sides of open surfaces.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ObstacleMesh {
@@ -52,6 +52,8 @@ pub struct ObstacleMesh {
     pub obj_sequence: Option<ObjSequence>,
     /// A character with a skeleton, from a glTF 2.0 file.
     pub gltf: Option<Gltf>,
+    /// A mannequin that moves.
+    pub character: Option<CharacterFile>,
     /// A sphere around the origin.
     pub sphere: Option<Sphere>,
     /// A box around the origin.

@@ -1,6 +1,7 @@
 //! Cameras over time, and what they mean for mesh sizes.
 
-use super::default;
+use super::{AnimationRef, Camera, default};
+use crate::scene::motion::Transform;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -13,9 +14,46 @@ pub struct ShotFile {
     #[serde(default)]
     pub start_s: f64,
     /// Cameras at increasing times, at constant rates in between. Before the first and after the last
-    /// nothing moves.
-    #[schemars(length(min = 1))]
+    /// nothing moves. A shot has these or `gltf`.
+    #[serde(default)]
     pub keyframes: Vec<CameraKeyframe>,
+    /// A camera from a glTF 2.0 file instead.
+    #[serde(default)]
+    pub gltf: Option<CameraGltf>,
+}
+
+/// A perspective camera of a glTF 2.0 file, moved by its nodes and one animation; followed at the times
+/// of the scene's frames. The resolution is that of `camera`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CameraGltf {
+    /// The file, relative to the scene file.
+    pub file: String,
+    /// Name of the camera or of its node; absent means the first that a node has.
+    #[serde(default)]
+    pub camera: Option<String>,
+    /// The animation, by name or by number counted from 0; absent means the first, or none where
+    /// the file has none.
+    #[serde(default)]
+    pub animation: Option<AnimationRef>,
+    /// When the animation begins (s).
+    #[serde(default)]
+    pub start_s: f64,
+    /// Places the file in the scene. Its y axis is up, so that most scenes give
+    /// `rotate: { axis: [1, 0, 0], degrees: 90 }`.
+    #[serde(default)]
+    pub transform: Transform,
+}
+
+/// Another camera that counts for mesh sizes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ViewCameraFile {
+    /// Its resolution, and its place without `shots`.
+    pub camera: Camera,
+    /// How it moves, shot after shot.
+    #[serde(default)]
+    pub shots: Vec<ShotFile>,
 }
 
 /// The camera at a time.
@@ -38,7 +76,7 @@ pub struct CameraKeyframe {
 
 /// Mesh sizes by what the camera sees (Koh2014): cloth outside of the picture is coarsened, and cloth
 /// in it meshed no finer than the pixels need.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct ViewFile {
     /// Edges of cloth that faces away may be longer by one over this (1). Right for clothes, whose
@@ -54,6 +92,13 @@ pub struct ViewFile {
     pub size_min_px: f64,
     /// Nothing is coarsened beyond this length of edges (m).
     pub size_max_m: f64,
+    /// Whether cloth behind obstacles and other cloth is coarsened, too: that which nothing of the
+    /// window's cameras sees.
+    pub occlusion: bool,
+    /// Edges of cloth that is hidden may be longer by one over this (1); counts with `occlusion`.
+    pub v_hidden: f64,
+    /// More cameras that see the cloth, for stereo or shadows; what any of them sees is fine.
+    pub cameras: Vec<ViewCameraFile>,
 }
 
 impl Default for ViewFile {

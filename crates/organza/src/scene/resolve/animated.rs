@@ -43,14 +43,18 @@ pub(super) fn sequence(
 /// Reads a character's file and the buffers it names.
 pub(super) fn read_gltf(gltf: &Gltf, at: &At<'_>, context: &mut Context<'_, '_>) -> Option<()> {
     at.key("start_s").bounded(gltf.start_s, MAX_TIME_S, "s");
-    let at = at.key("file");
-    let bytes = context.read(&at, &gltf.file, MAX_MESH_BYTES)?;
-    let buffers = buffer_files(&gltf.file, bytes);
+    read_file(&gltf.file, &at.key("file"), context)
+}
+
+/// Reads a glTF file and the buffers it names.
+pub(super) fn read_file(file: &str, at: &At<'_>, context: &mut Context<'_, '_>) -> Option<()> {
+    let bytes = context.read(at, file, MAX_MESH_BYTES)?;
+    let buffers = buffer_files(file, bytes);
     let buffers = buffers
-        .map_err(|message| at.report(IssueKind::File, format!("`{}` {message}", gltf.file)))
+        .map_err(|message| at.report(IssueKind::File, format!("`{file}` {message}")))
         .ok()?;
     for name in buffers {
-        context.read(&at, &name, MAX_MESH_BYTES)?;
+        context.read(at, &name, MAX_MESH_BYTES)?;
     }
     Some(())
 }

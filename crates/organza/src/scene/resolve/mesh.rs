@@ -1,8 +1,8 @@
 //! Checks and resolves where a mesh comes from.
 
 use super::super::check::At;
-use super::super::data::MeshSource;
-use super::super::format::{Disc, Grid, MeshFile, Poncho, Skirt, Tube, Tunic};
+use super::super::data::{Garment, MeshSource};
+use super::super::format::{Disc, GarmentFile, Grid, MeshFile, Poncho, Skirt, Tube, Tunic};
 use super::super::limits::{MAX_COORDINATE_M, MAX_MESH_BYTES, MAX_TRIANGLES};
 use super::super::motion::Transform;
 use super::{Context, beyond};
@@ -15,7 +15,7 @@ pub(super) fn resolve(
     context: &mut Context<'_, '_>,
 ) -> Option<MeshSource> {
     let at = cloth.key("mesh");
-    let MeshFile { obj, material_obj, grid, disc, tube, skirt, tunic, poncho } = mesh;
+    let MeshFile { obj, material_obj, grid, disc, tube, skirt, tunic, poncho, garment } = mesh;
     if material_obj.is_some() && obj.is_none() {
         at.key("material_obj").complain("needs `obj`, whose flat pattern it is");
     }
@@ -27,12 +27,13 @@ pub(super) fn resolve(
         skirt.map(MeshSource::Skirt),
         tunic.map(MeshSource::Tunic),
         poncho.map(MeshSource::Poncho),
+        garment.map(|garment| MeshSource::Garment(worn(garment, context, &at.key("garment")))),
     ];
     let mut given = sources.into_iter().flatten();
     let (first, more) = (given.next(), given.count());
     let Some(source) = first.filter(|_| more == 0) else {
         let n = if more == 0 { 0 } else { more + 1 };
-        let all = "obj, grid, disc, tube, skirt, tunic, poncho";
+        let all = "obj, grid, disc, tube, skirt, tunic, poncho, garment";
         at.complain(format!("must have exactly one of {all}; has {n}"));
         return None;
     };
@@ -49,6 +50,7 @@ pub(super) fn resolve(
         MeshSource::Skirt(skirt) => check_skirt(skirt, &at.key("skirt")),
         MeshSource::Tunic(tunic) => check_tunic(tunic, &at.key("tunic")),
         MeshSource::Poncho(poncho) => check_poncho(poncho, &at.key("poncho")),
+        MeshSource::Garment(garment) => check_garment(garment, &at.key("garment")),
     }
     let reach = extent(&source) * transform.scale;
     if extent(&source) <= MAX_COORDINATE_M && reach > MAX_COORDINATE_M {
@@ -71,6 +73,26 @@ fn extent(source: &MeshSource) -> f64 {
             reach.max(tunic.hem_width_m.unwrap_or(0.0)).max(tunic.length_m)
         }
         MeshSource::Poncho(poncho) => poncho.width_m.max(poncho.length_m),
+        MeshSource::Garment(_) => 2.0,
+    }
+}
+
+/// A garment; in a crowd nobody wears it yet.
+fn worn(garment: GarmentFile, context: &Context<'_, '_>, at: &At<'_>) -> Garment {
+    let GarmentFile { kind, on, cell_m } = garment;
+    match (&on, context.in_crowd) {
+        (None, false) => at.complain("needs `on`, the name of the character that wears it"),
+        (Some(_), true) => at.key("on").complain("goes without saying in a crowd: leave it out"),
+        _ => {}
+    }
+    Garment { kind, on: on.unwrap_or_default(), cell_m }
+}
+
+fn check_garment(garment: &Garment, at: &At<'_>) {
+    let [low, high] = [mannequin::Garment::MIN_CELL, mannequin::Garment::MAX_CELL];
+    if !(low..=high).contains(&garment.cell_m) {
+        let got = garment.cell_m;
+        at.key("cell_m").complain(format!("must lie between {low} and {high}, got {got}"));
     }
 }
 

@@ -2,17 +2,19 @@
 
 mod animated;
 mod cloth;
+mod crowd;
 mod handle;
 mod mesh;
 mod obstacle;
 mod view;
 
 use super::check::{At, Complaints, beyond};
-use super::data::Scene;
+use super::data::{Cloth, MeshSource, Obstacle, ObstacleSource, Scene};
 use super::files::Files;
 use super::format::{ClothFile, SceneFile, Wind};
 use super::issue::{Issue, IssueKind};
 use super::limits;
+use super::typed::suggestion;
 
 /// What resolving needs and collects.
 pub(super) struct Context<'r, 'f> {
@@ -21,6 +23,8 @@ pub(super) struct Context<'r, 'f> {
     pub(super) complaints: &'f Complaints,
     /// Issues in other files.
     pub(super) foreign: Vec<Issue>,
+    /// Whether cloths are being resolved that a crowd wears.
+    pub(super) in_crowd: bool,
 }
 
 impl Context<'_, '_> {
@@ -47,7 +51,7 @@ pub(super) fn resolve(
     }
     top.key("recording.checkpoint_every_frames")
         .at_least(file.recording.checkpoint_every_frames, 1);
-    if file.cloths.is_empty() {
+    if file.cloths.is_empty() && file.crowd.is_none() {
         top.key("cloths").complain("a scene needs at least one cloth");
     }
     for (key, n, limit) in [
@@ -63,7 +67,7 @@ pub(super) fn resolve(
     let given = |cloth: &ClothFile| cloth.name.clone();
     let names = names(&file.cloths, given, "cloth", &top.key("cloths"));
     let handles = handle::resolve(file.handles, &names, &top.key("handles"));
-    let cloths: Option<Vec<_>> = {
+    let mut cloths: Option<Vec<_>> = {
         let resolved: Vec<_> = file
             .cloths
             .into_iter()
@@ -75,11 +79,34 @@ pub(super) fn resolve(
             .collect();
         resolved.into_iter().collect()
     };
-    let contact = obstacle::contact(file.contact, !file.obstacles.is_empty(), &top.key("contact"));
-    let obstacles = obstacle::resolve(file.obstacles, &top.key("obstacles"), context);
+    let has_obstacles = !file.obstacles.is_empty() || file.crowd.is_some();
+    let contact = obstacle::contact(file.contact, has_obstacles, &top.key("contact"));
+    let mut obstacles = obstacle::resolve(file.obstacles, &top.key("obstacles"), context);
+    if let (Some(cloths), Some(obstacles)) = (&cloths, &obstacles) {
+        check_wearers(cloths, obstacles, &top.key("cloths"));
+    }
+    if let Some(crowd) = file.crowd {
+        let members = crowd::resolve(crowd, &top.key("crowd"), context)?;
+        let taken = |name: &String| {
+            let obstacles = obstacles.iter().flatten().any(|obstacle| obstacle.name == *name);
+            obstacles || cloths.iter().flatten().any(|cloth| cloth.name == *name)
+        };
+        if let Some((member, _)) = members.iter().find(|(member, _)| taken(&member.name)) {
+            let name = &member.name;
+            top.key("crowd").complain(format!("`{name}` is the name of something else already"));
+            return None;
+        }
+        for (obstacle, cloth) in members {
+            obstacles.as_mut()?.push(obstacle);
+            cloths.as_mut()?.push(cloth);
+        }
+    }
     let up = super::data::up(file.gravity);
-    let camera_path = view::path(file.camera.as_ref(), &file.shots, up, &top);
-    let view = file.view.and_then(|view| view::settings(view, file.camera.is_some(), &top));
+    let facts = view::Facts { up, frames_per_second: file.frames_per_second, frames: file.frames };
+    let camera_path = view::path(file.camera.as_ref(), &file.shots, &facts, &top, context);
+    let view = file
+        .view
+        .and_then(|view| view::settings(view, file.camera.is_some(), &facts, &top, context));
     Some(Scene {
         name: file.name.unwrap_or_else(|| default_name.to_owned()),
         frames: file.frames,
@@ -100,6 +127,22 @@ pub(super) fn resolve(
         view,
         recording: file.recording,
     })
+}
+
+/// Complains of garments on what is no character.
+fn check_wearers(cloths: &[Cloth], obstacles: &[Obstacle], at: &At<'_>) {
+    for (i, cloth) in cloths.iter().enumerate() {
+        let MeshSource::Garment(garment) = &cloth.mesh else { continue };
+        let is_character = |o: &&Obstacle| matches!(o.mesh, ObstacleSource::Character(_));
+        let names: Vec<&str> =
+            obstacles.iter().filter(is_character).map(|o| o.name.as_str()).collect();
+        // A name that is missing has been complained of.
+        if !garment.on.is_empty() && !names.contains(&garment.on.as_str()) {
+            let (on, hint) = (&garment.on, suggestion(&garment.on, &names));
+            let at = at.index(i).key("mesh.garment.on");
+            at.complain(format!("there is no character `{on}`{hint}"));
+        }
+    }
 }
 
 /// The names of all `things`, given or made up; names used twice are complained of.

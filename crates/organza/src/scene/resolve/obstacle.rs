@@ -2,9 +2,11 @@
 
 use super::super::check::At;
 use super::super::data::{Obstacle, ObstacleSource};
-use super::super::format::{Capsule, ContactFile, ObstacleFile, ObstacleMesh, Sphere, Torus};
+use super::super::format::{
+    Capsule, CharacterFile, ContactFile, ObstacleFile, ObstacleMesh, Sphere, Torus,
+};
 use super::super::limits::{
-    MAX_COORDINATE_M, MAX_FRICTION, MAX_MESH_BYTES, MAX_THICKNESS_M, MAX_TRIANGLES,
+    MAX_COORDINATE_M, MAX_FRICTION, MAX_MESH_BYTES, MAX_THICKNESS_M, MAX_TIME_S, MAX_TRIANGLES,
 };
 use super::animated;
 use super::handle::{check_motion, check_times, check_transform};
@@ -79,11 +81,13 @@ fn resolve_one(
 
 /// Checks the one source that `mesh` names.
 fn mesh(mesh: ObstacleMesh, at: &At<'_>, context: &mut Context<'_, '_>) -> Option<ObstacleSource> {
-    let ObstacleMesh { obj, obj_sequence, gltf, sphere, cuboid, plane, capsule, torus } = mesh;
+    let ObstacleMesh { obj, obj_sequence, gltf, character, sphere, cuboid, plane, capsule, torus } =
+        mesh;
     let given = [
         obj.is_some(),
         obj_sequence.is_some(),
         gltf.is_some(),
+        character.is_some(),
         sphere.is_some(),
         cuboid.is_some(),
         plane.is_some(),
@@ -93,8 +97,8 @@ fn mesh(mesh: ObstacleMesh, at: &At<'_>, context: &mut Context<'_, '_>) -> Optio
     let n = given.into_iter().filter(|given| *given).count();
     if n != 1 {
         at.complain(format!(
-            "must have exactly one of obj, obj_sequence, gltf, sphere, box, plane, capsule, torus; \
-             has {n}"
+            "must have exactly one of obj, obj_sequence, gltf, character, sphere, box, plane, \
+             capsule, torus; has {n}"
         ));
         return None;
     }
@@ -105,6 +109,7 @@ fn mesh(mesh: ObstacleMesh, at: &At<'_>, context: &mut Context<'_, '_>) -> Optio
     let sources = [
         obj.map(ObstacleSource::Obj),
         gltf.map(ObstacleSource::Gltf),
+        character.map(ObstacleSource::Character),
         sphere.map(ObstacleSource::Sphere),
         cuboid.map(ObstacleSource::Cuboid),
         plane.map(ObstacleSource::Plane),
@@ -118,6 +123,7 @@ fn mesh(mesh: ObstacleMesh, at: &At<'_>, context: &mut Context<'_, '_>) -> Optio
         }
         ObstacleSource::Gltf(gltf) => animated::read_gltf(gltf, &at.key("gltf"), context)?,
         ObstacleSource::Sequence(_) => {}
+        ObstacleSource::Character(character) => check_character(character, &at.key("character")),
         ObstacleSource::Sphere(sphere) => check_sphere(sphere, &at.key("sphere")),
         ObstacleSource::Cuboid(cuboid) => check_sizes(&cuboid.size_m, &at.key("box.size_m")),
         ObstacleSource::Plane(plane) => check_sizes(&plane.size_m, &at.key("plane.size_m")),
@@ -131,12 +137,25 @@ fn mesh(mesh: ObstacleMesh, at: &At<'_>, context: &mut Context<'_, '_>) -> Optio
 fn extent(source: &ObstacleSource) -> f64 {
     match source {
         ObstacleSource::Obj(_) | ObstacleSource::Sequence(_) | ObstacleSource::Gltf(_) => 0.0,
+        ObstacleSource::Character(_) => 2.0,
         ObstacleSource::Sphere(sphere) => sphere.radius_m,
         ObstacleSource::Cuboid(cuboid) => cuboid.size_m.into_iter().fold(0.0, f64::max),
         ObstacleSource::Plane(plane) => plane.size_m.into_iter().fold(0.0, f64::max),
         ObstacleSource::Capsule(capsule) => capsule.radius_m.max(capsule.length_m),
         ObstacleSource::Torus(torus) => 2.0 * torus.radius_m,
     }
+}
+
+/// Checks a character, of an obstacle or of a crowd.
+pub(super) fn check_character(character: &CharacterFile, at: &At<'_>) {
+    let [low, high] = [mannequin::Mannequin::MIN_CELL, mannequin::Mannequin::MAX_CELL];
+    if !(low..=high).contains(&character.cell_m) {
+        let got = character.cell_m;
+        at.key("cell_m").complain(format!("must lie between {low} and {high}, got {got}"));
+    }
+    at.key("phase").bounded(character.phase, 1e6, "");
+    at.key("start_s").bounded(character.start_s, MAX_TIME_S, "s");
+    at.key("ease_s").not_negative(character.ease_s, MAX_TIME_S, "s");
 }
 
 fn check_sizes(sizes: &[f64], at: &At<'_>) {

@@ -1,8 +1,13 @@
 //! Checks and resolves the camera, its shots, and the sizing by what it sees.
 
 use super::super::check::{At, beyond};
-use super::super::format::{Camera, CameraKeyframe, ShotFile, ViewFile};
+use super::super::data::View;
+use super::super::format::{Camera, CameraGltf, CameraKeyframe, ShotFile, ViewFile};
+use super::super::issue::IssueKind;
 use super::super::limits;
+use super::handle::check_transform;
+use super::{Context, animated};
+use crate::character::{Container, read_camera};
 use nalgebra::Vector3;
 use sizing_view::{CameraPath, Key, Shot, ViewSettings};
 
@@ -10,9 +15,11 @@ use sizing_view::{CameraPath, Key, Shot, ViewSettings};
 pub(super) fn path(
     camera: Option<&Camera>,
     shots: &[ShotFile],
-    scene_up: [f64; 3],
+    scene: &Facts,
     top: &At<'_>,
+    context: &mut Context<'_, '_>,
 ) -> Option<CameraPath> {
+    let scene_up = scene.up;
     let Some(camera) = camera else {
         if !shots.is_empty() {
             top.key("shots").complain("the scene has no `camera`, which sets the resolution");
@@ -36,6 +43,14 @@ pub(super) fn path(
         .map(|(i, shot)| {
             let at = at.index(i);
             at.key("start_s").bounded(shot.start_s, limits::MAX_TIME_S, "s");
+            if shot.keyframes.is_empty() == shot.gltf.is_none() {
+                at.complain("must have exactly one of keyframes, gltf");
+                return None;
+            }
+            if let Some(gltf) = &shot.gltf {
+                let keys = from_gltf(gltf, camera, scene, &at.key("gltf"), context)?;
+                return Some(Shot { start: shot.start_s, keys });
+            }
             let keys = shot.keyframes.iter().enumerate();
             let keys: Vec<Option<Key>> = keys
                 .map(|(k, key)| keyframe(key, camera, scene_up, &at.key("keyframes").index(k)))
@@ -46,6 +61,67 @@ pub(super) fn path(
         .collect();
     let path = CameraPath::new(resolved.into_iter().collect::<Option<_>>()?);
     path.map_err(|error| at.complain(error.to_string())).ok()
+}
+
+/// What the times and the directions of cameras depend on.
+pub(super) struct Facts {
+    /// Unit vector against gravity.
+    pub(super) up: [f64; 3],
+    /// Frame rate (1/s).
+    pub(super) frames_per_second: f64,
+    /// Number of frames after the first.
+    pub(super) frames: u32,
+}
+
+/// The cameras of a glTF file at the times of the scene's frames; one if it does not move.
+fn from_gltf(
+    gltf: &CameraGltf,
+    like: &Camera,
+    scene: &Facts,
+    at: &At<'_>,
+    context: &mut Context<'_, '_>,
+) -> Option<Vec<Key>> {
+    check_transform(&gltf.transform, &at.key("transform"));
+    at.key("start_s").bounded(gltf.start_s, limits::MAX_TIME_S, "s");
+    animated::read_file(&gltf.file, &at.key("file"), context)?;
+    let read = {
+        let file = |name: &str| context.files.get(name);
+        Container::new(&gltf.file, file(&gltf.file)?, file)
+            .and_then(|file| read_camera(&file, gltf.camera.as_deref(), gltf.animation.as_ref()))
+    };
+    let refused = |message: String| {
+        at.key("file").report(IssueKind::File, format!("`{}`: {message}", gltf.file));
+    };
+    let camera = read.map_err(refused).ok()?;
+    let place = gltf.transform.similarity();
+    let times: Vec<f64> = match camera.span() {
+        None => vec![0.0],
+        Some([first, last]) => {
+            // From the frame before it begins to that after its end.
+            let frame = |time: f64| (time + gltf.start_s) * scene.frames_per_second;
+            let frames = f64::from(scene.frames) + limits::MAX_VIEW_WINDOW;
+            let from = frame(first).floor().clamp(0.0, frames) as u64;
+            let to = frame(last).ceil().clamp(0.0, frames) as u64;
+            (from..=to).map(|k| k as f64 / scene.frames_per_second).collect()
+        }
+    };
+    let keys = times.into_iter().map(|time| {
+        let (position, axes) = camera.at(time - gltf.start_s)?;
+        let fov = camera.vertical_fov;
+        if !(fov > 0.0 && fov < std::f64::consts::PI) {
+            return None;
+        }
+        let focal = 0.5 * f64::from(like.resolution[1]) / (0.5 * fov).tan();
+        let position = place.transform_point(&position.into()).coords;
+        let axes = place.isometry.rotation * axes;
+        let camera = sizing_view::Camera::new(position, axes, focal, like.resolution).ok()?;
+        Some(Key { time, camera })
+    });
+    let keys: Option<Vec<Key>> = keys.collect();
+    if keys.is_none() {
+        refused("its camera has no direction, place or opening angle".into());
+    }
+    keys
 }
 
 fn keyframe(key: &CameraKeyframe, like: &Camera, scene_up: [f64; 3], at: &At<'_>) -> Option<Key> {
@@ -95,14 +171,20 @@ fn check_camera(camera: &Camera, scene_up: [f64; 3], at: &At<'_>) -> Option<sizi
 }
 
 /// The constants of sizing by view.
-pub(super) fn settings(view: ViewFile, has_camera: bool, top: &At<'_>) -> Option<ViewSettings> {
+pub(super) fn settings(
+    view: ViewFile,
+    has_camera: bool,
+    scene: &Facts,
+    top: &At<'_>,
+    context: &mut Context<'_, '_>,
+) -> Option<View> {
     let at = top.key("view");
     if !has_camera {
         at.complain("the scene has no `camera` to look through");
     }
     let settings = ViewSettings {
         v_back: view.v_back,
-        v_hidden: view.v_back,
+        v_hidden: view.v_hidden,
         v_out: view.v_out,
         margin: view.margin_m,
         window: view.window_frames,
@@ -111,5 +193,20 @@ pub(super) fn settings(view: ViewFile, has_camera: bool, top: &At<'_>) -> Option
         ..ViewSettings::default()
     };
     settings.check().map_err(|error| at.complain(error.to_string())).ok()?;
-    has_camera.then_some(settings)
+    if view.cameras.len() > limits::MAX_VIEW_CAMERAS {
+        let (n, limit) = (view.cameras.len(), limits::MAX_VIEW_CAMERAS);
+        at.key("cameras").complain(format!("has {n} elements, beyond the limit of {limit}"));
+        return None;
+    }
+    let more: Vec<Option<CameraPath>> = view
+        .cameras
+        .iter()
+        .enumerate()
+        .map(|(i, more)| {
+            let at = at.key("cameras").index(i);
+            path(Some(&more.camera), &more.shots, scene, &at, context)
+        })
+        .collect();
+    let more_cameras = more.into_iter().collect::<Option<_>>()?;
+    has_camera.then_some(View { settings, occlusion: view.occlusion, more_cameras })
 }

@@ -1,0 +1,239 @@
+//! What mesh sizes by view do to what the camera sees, as one JSON object.
+//!
+//! ```text
+//! view_quality error SCENE FIRST LAST EVERY HORIZON    distance from adaptive runs, chaos floor, popping
+//! view_quality edges SCENE FRAMES                      mean length of visible edges in every frame
+//! ```
+//!
+//! All in pixels of the scene's camera, over material points that it sees: inside the picture, on faces
+//! that face it.
+
+use std::error::Error;
+use std::path::Path;
+
+use mesh_core::geometry::inverse_edges;
+use mesh_core::{ClothState, Material2, TriangleId, World3};
+use organza::checkpoint::{restore, save};
+use organza::scene::{LoadOptions, Loaded, load};
+use organza::world::World;
+use serde_json::json;
+use sizing_view::{Camera, Frustum};
+
+type Outcome<T> = Result<T, Box<dyn Error>>;
+
+fn main() -> Outcome<()> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let number = |k: usize| -> Outcome<u64> {
+        Ok(words.get(k).ok_or("an argument is missing; see the head of the source")?.parse()?)
+    };
+    let scene = words.get(1).map(String::as_str).unwrap_or_default();
+    let told = match words.first().map(String::as_str) {
+        Some("error") => error(scene.as_ref(), [number(2)?, number(3)?, number(4)?], number(5)?)?,
+        Some("edges") => edges(scene.as_ref(), number(2)?)?,
+        _ => return Err("says neither `error` nor `edges`".into()),
+    };
+    println!("{told}");
+    Ok(())
+}
+
+/// The scene with some changes.
+fn scene(path: &Path, sets: Vec<String>) -> Outcome<Loaded> {
+    Ok(load(path, &LoadOptions { sets, allow_unsupported: false })?)
+}
+
+/// Where the remeshing of every cloth stands in the file, so that it can be set.
+fn remeshings(path: &Path) -> Outcome<Vec<(String, f64)>> {
+    let file: serde_json::Value = json5_value(&std::fs::read_to_string(path)?)?;
+    let mut all = Vec::new();
+    for (list, at) in [(&file["cloths"], "cloths"), (&file["crowd"]["cloths"], "crowd.cloths")] {
+        for (k, cloth) in list.as_array().into_iter().flatten().enumerate() {
+            if let Some(least) = cloth["remeshing"]["size_m"]["min"].as_f64() {
+                all.push((format!("{at}[{k}].remeshing"), least));
+            }
+        }
+    }
+    Ok(all)
+}
+
+fn json5_value(text: &str) -> Outcome<serde_json::Value> {
+    Ok(json5::from_str(text)?)
+}
+
+/// Errors over a short horizon: at every start the state of the adaptive run is given to a run with view,
+/// to one with smallest edges longer by a tenth, and to one without remeshing.
+fn error(path: &Path, [first, last, every]: [u64; 3], horizon: u64) -> Outcome<serde_json::Value> {
+    let plain = || vec!["view=null".to_owned()];
+    let adaptive = scene(path, plain())?;
+    let view = scene(path, Vec::new())?;
+    let all = remeshings(path)?;
+    let mut other = plain();
+    other.extend(all.iter().map(|(at, least)| format!("{at}.size_m.min={}", 1.1 * least)));
+    let other = scene(path, other)?;
+    let mut fixed = plain();
+    fixed.extend(all.iter().map(|(at, _)| format!("{at}=null")));
+    let fixed = scene(path, fixed)?;
+
+    let mut along = World::new(&adaptive)?;
+    // The run that pops or does not is the one with view, so it is followed as well.
+    let mut seen = World::new(&view)?;
+    let (mut errors, mut floors, mut pops, mut pop_floors) = (vec![], vec![], vec![], vec![]);
+    let mut popped = Vec::new();
+    for frame in 0..=last {
+        if frame >= first && (frame - first) % every == 0 {
+            let start = save(&mut along);
+            let ahead = |loaded: &Loaded| -> Outcome<World> {
+                let mut world = World::new(loaded)?;
+                restore(&mut world, &start)?;
+                for _ in 0..horizon {
+                    world.advance()?;
+                }
+                Ok(world)
+            };
+            let truth = ahead(&adaptive)?;
+            let eye = Eye::new(&view, truth.time());
+            errors.push(eye.rms(&truth.cloth, &ahead(&view)?.cloth));
+            floors.push(eye.rms(&truth.cloth, &ahead(&other)?.cloth));
+        }
+        if frame >= first && frame < last {
+            // The next frame with its remeshing and without differ by it alone.
+            let moved = |world: &mut World| -> Outcome<f64> {
+                let start = save(world);
+                let mut still = World::new(&fixed)?;
+                restore(&mut still, &start)?;
+                still.advance()?;
+                world.advance()?;
+                Ok(Eye::new(&view, world.time()).most(&still.cloth, &world.cloth))
+            };
+            let pop = moved(&mut seen)?;
+            popped.push(json!({ "frame": frame + 1, "px": pop }));
+            pops.push(pop);
+            pop_floors.push(moved(&mut along)?);
+        } else if frame < last {
+            along.advance()?;
+            seen.advance()?;
+        }
+    }
+    let rms = |values: &[f64]| {
+        (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
+    };
+    let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    Ok(json!({
+        "error_px": rms(&errors), "floor_px": rms(&floors),
+        "errors_px": errors, "floors_px": floors,
+        "pop_px": most(&pops), "pop_floor_px": most(&pop_floors), "pops": popped,
+    }))
+}
+
+/// Mean length of visible edges in the picture, frame by frame.
+fn edges(path: &Path, frames: u64) -> Outcome<serde_json::Value> {
+    let loaded = scene(path, Vec::new())?;
+    let mut world = World::new(&loaded)?;
+    let (mut px, mut distances) = (Vec::new(), Vec::new());
+    for _ in 0..frames {
+        world.advance()?;
+        let eye = Eye::new(&loaded, world.time());
+        let cloth = &world.cloth;
+        let (mut sum, mut n) = (0.0, 0.0);
+        for t in cloth.mesh.triangle_ids().filter(|&t| eye.sees(cloth, t)) {
+            let corners = cloth.corners(t).map(|x| eye.picture(x));
+            for k in 0..3 {
+                sum += (corners[(k + 1) % 3] - corners[k]).norm();
+                n += 1.0;
+            }
+        }
+        px.push(sum / n);
+        let middle = cloth.x.iter().sum::<World3>() / cloth.x.len() as f64;
+        distances.push((middle - eye.camera.position()).norm());
+    }
+    Ok(json!({ "edge_px": px, "distance_m": distances }))
+}
+
+/// The camera of a scene at a time.
+struct Eye {
+    camera: Camera,
+    frustum: Frustum,
+}
+
+impl Eye {
+    fn new(loaded: &Loaded, time: f64) -> Eye {
+        let path = loaded.scene.camera_path.as_ref().expect("a scene with view has a camera");
+        let camera = path.at(time);
+        Eye { camera, frustum: Frustum::new(&camera) }
+    }
+
+    /// Where a point is in the picture, from its middle (px).
+    fn picture(&self, x: World3) -> Material2 {
+        let c = self.frustum.camera_space(x);
+        Material2::new(c.x, c.y) * (self.camera.focal_px() / c.z.max(self.camera.near()))
+    }
+
+    /// Whether a triangle is in the picture and faces the camera.
+    fn sees(&self, cloth: &ClothState, t: TriangleId) -> bool {
+        let corners = cloth.corners(t);
+        let [a, b, c] = corners.map(|x| self.frustum.camera_space(x));
+        let inside = corners.iter().all(|x| self.frustum.distance(&[*x; 3]) == 0.0);
+        inside && (b - a).cross(&(c - a)).dot(&a) <= 0.0
+    }
+
+    /// Distances in the picture of the middles of all triangles of `a` that are seen from the same
+    /// points of the material of `b`, with the areas they stand for (px, m²).
+    fn distances(&self, a: &ClothState, b: &ClothState) -> Vec<(f64, f64)> {
+        let boxes = Lookup::new(b);
+        let seen = a.mesh.triangle_ids().filter(|&t| self.sees(a, t));
+        seen.filter_map(|t| {
+            let corners = a.corners(t);
+            let [u, v, w] = a.mesh.material()[t.index()];
+            let x = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let other = boxes.at(b, a.mesh.panels()[t.index()], (u + v + w) / 3.0)?;
+            Some(((self.picture(x) - self.picture(other)).norm(), a.mesh.area(t)))
+        })
+        .collect()
+    }
+
+    /// Root of the mean square over the area.
+    fn rms(&self, a: &ClothState, b: &ClothState) -> f64 {
+        let all = self.distances(a, b);
+        let area: f64 = all.iter().map(|(_, area)| area).sum();
+        if area == 0.0 {
+            return 0.0;
+        }
+        (all.iter().map(|(px, area)| px * px * area).sum::<f64>() / area).sqrt()
+    }
+
+    fn most(&self, a: &ClothState, b: &ClothState) -> f64 {
+        self.distances(a, b).into_iter().map(|(px, _)| px).fold(0.0, f64::max)
+    }
+}
+
+/// Triangles by panel.
+struct Lookup {
+    panels: Vec<Vec<TriangleId>>,
+}
+
+impl Lookup {
+    fn new(cloth: &ClothState) -> Lookup {
+        let mut panels = vec![Vec::new(); cloth.densities().len()];
+        for t in cloth.mesh.triangle_ids() {
+            panels[cloth.mesh.panels()[t.index()] as usize].push(t);
+        }
+        Lookup { panels }
+    }
+
+    /// Where a material point of a panel is (m).
+    fn at(&self, cloth: &ClothState, panel: u32, u: Material2) -> Option<World3> {
+        self.panels[panel as usize].iter().find_map(|&t| {
+            let corners = cloth.mesh.material()[t.index()];
+            let low = corners[0].inf(&corners[1]).inf(&corners[2]);
+            let high = corners[0].sup(&corners[1]).sup(&corners[2]);
+            if u.x < low.x || u.y < low.y || u.x > high.x || u.y > high.y {
+                return None;
+            }
+            // u = corner 0 + edges · s.
+            let s = inverse_edges(corners) * (u - corners[0]);
+            let weights = [1.0 - s.x - s.y, s.x, s.y];
+            let x = cloth.corners(t);
+            let inside = weights.iter().all(|w| *w >= -1e-9);
+            inside.then(|| x[0] * weights[0] + x[1] * weights[1] + x[2] * weights[2])
+        })
+    }
+}
