@@ -1,9 +1,11 @@
 //! Pictures of the frames of a recording: a sequence, or the poster beside a recording.
 
+mod beads;
 mod error;
 mod paint;
 mod view;
 
+pub use beads::Beads;
 pub use error::PictureError;
 pub use paint::{Colouring, STRETCH_RANGE};
 pub use view::{View, viewpoint};
@@ -36,7 +38,7 @@ pub struct PictureOptions {
     pub colouring: Colouring,
 }
 
-/// Draws the garments of a frame, and its obstacles in grey.
+/// Draws the garments of a frame, its obstacles in grey, and its particles as `beads`.
 ///
 /// # Errors
 /// See [`crate::render::draw`].
@@ -45,8 +47,10 @@ pub fn draw_frame(
     viewpoint: &Viewpoint,
     size: Size,
     options: &PictureOptions,
+    beads: &Beads,
     style: &Style,
 ) -> Result<Image, RenderError> {
+    let fluid = frame.fluid.as_ref().map(|particles| beads.draw(particles, options.colouring));
     let paints: Vec<_> = frame.garments.iter().map(|g| options.colouring.of(g)).collect();
     let garments = frame.garments.iter().zip(&paints).map(|(garment, paint)| Surface {
         points: &garment.points,
@@ -58,7 +62,11 @@ pub fn draw_frame(
         paint: Paint::OBSTACLE,
         ..Surface::new(&obstacle.points, &obstacle.triangles)
     });
-    let layers: Vec<Layer<'_>> = garments.chain(obstacles).map(Layer::Surface).collect();
+    let layers: Vec<Layer<'_>> = garments
+        .chain(obstacles)
+        .chain(fluid.iter().map(|f| f.surface()))
+        .map(Layer::Surface)
+        .collect();
     draw_with(&layers, viewpoint, size, style)
 }
 
@@ -81,14 +89,14 @@ pub fn render(
     let mut recording = Recording::open(path).map_err(RunError::recording(path))?;
     let frames = selected(&recording, path, range)?;
     let up = up(&recording);
-    let bounds = bounds(&mut recording, path)?;
+    let (bounds, beads) = whole(&mut recording, path)?;
     let style = Style { floor: bounds.lowest(up), ..Style::default() };
     let mut files = None;
     for (k, &index) in frames.iter().enumerate() {
         let frame = recording.frame(index).map_err(RunError::recording(path))?;
         let (viewpoint, size) = viewpoint(&frame, bounds.corners(), up, options)
             .ok_or_else(|| PictureError::NoCamera { path: path.to_owned(), frame: index })?;
-        let png = draw_frame(&frame, &viewpoint, size, options, &style)?.encode_png()?;
+        let png = draw_frame(&frame, &viewpoint, size, options, &beads, &style)?.encode_png()?;
         // Only now: what cannot be drawn leaves no folder behind.
         let files = match &files {
             Some(files) => files,
@@ -123,23 +131,27 @@ pub fn write_poster(path: &Path, poster: &Path) -> Result<(), PictureError> {
     let style = Style { floor: Bounds::of(points()).lowest(up), ..Style::default() };
     let (viewpoint, size) = viewpoint(&frame, points(), up, &options)
         .ok_or_else(|| PictureError::NoCamera { path: path.to_owned(), frame: last })?;
-    Ok(draw_frame(&frame, &viewpoint, size, &options, &style)?.write_png(poster)?)
+    let mut beads = Beads::of(&recording)?;
+    beads.note(frame.fluid.as_deref().unwrap_or_default());
+    Ok(draw_frame(&frame, &viewpoint, size, &options, &beads, &style)?.write_png(poster)?)
 }
 
-/// The box around everything in a recording.
-fn bounds(recording: &mut Recording<File>, path: &Path) -> Result<Bounds, RunError> {
-    let mut bounds = Bounds::EMPTY;
+/// The box around everything in a recording, and what its particles look like.
+fn whole(recording: &mut Recording<File>, path: &Path) -> Result<(Bounds, Beads), RunError> {
+    let (mut bounds, mut beads) = (Bounds::EMPTY, Beads::of(recording)?);
     let indices: Vec<u64> = recording.frames().map(|frame| frame.index).collect();
     for index in indices {
         let frame = recording.frame(index).map_err(RunError::recording(path))?;
         bounds.extend(points(&frame));
+        beads.note(frame.fluid.as_deref().unwrap_or_default());
     }
-    Ok(bounds)
+    Ok((bounds, beads))
 }
 
 /// All points that a picture of a frame shows.
 fn points(frame: &OwnedFrame) -> impl Iterator<Item = [f64; 3]> + Clone + '_ {
     let garments = frame.garments.iter().map(|garment| &garment.points);
     let obstacles = frame.obstacles.iter().map(|obstacle| &obstacle.points);
-    garments.chain(obstacles).flatten().copied()
+    let fluid = frame.fluid.iter().flatten().map(|particle| particle.position);
+    garments.chain(obstacles).flatten().copied().chain(fluid)
 }

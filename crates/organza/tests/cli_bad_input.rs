@@ -122,8 +122,8 @@ fn scenes() {
         ),
         (
             "unsupported",
-            format!("{{frames: 1, fluid: {{}}, {CLOTH}}}"),
-            &["s.json5:1:13: fluid: not supported yet", "--allow-unsupported"],
+            format!("{{frames: 1, morphs: {{}}, {CLOTH}}}"),
+            &["s.json5:1:13: morphs: not supported yet", "--allow-unsupported"],
         ),
         (
             "handle-without-cloth",

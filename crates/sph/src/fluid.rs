@@ -5,7 +5,7 @@ use crate::incremental::{Changes, Update};
 use crate::motion::{Moved, Outside, larger};
 use crate::neighbours::Neighbours;
 use crate::pair::Laws;
-use crate::report::StepReport;
+use crate::report::{Seconds, StepReport};
 use crate::restraint::RestraintSettings;
 use crate::settings::{FluidError, FluidSettings};
 use crate::source::{Emitter, Sink};
@@ -14,6 +14,7 @@ use crate::sweep;
 use crate::walls::{WallState, Walls};
 use arps::Restraint;
 use nalgebra::Vector3;
+use std::time::Instant;
 
 /// Particles of one fluid between walls. `R` is the policy that restrains them; `()` restrains nothing.
 #[derive(Clone, Debug)]
@@ -97,7 +98,7 @@ impl Fluid {
             scratch: Scratch::default(),
         };
         fluid.list_neighbours();
-        fluid.evaluate_all();
+        fluid.evaluate_all(&mut Seconds::default());
         fluid.hardest = hardest(&fluid.state.a);
         Ok(fluid)
     }
@@ -118,8 +119,8 @@ impl<R: Restraint> Fluid<R> {
         Ok(self.with_restraint(Some((policy, settings))))
     }
 
-    /// The same fluid without any policy.
-    pub fn released(self) -> Fluid {
+    /// The same fluid without any policy, although it is of a type that could have one.
+    pub fn released<Q: Restraint>(self) -> Fluid<Q> {
         self.with_restraint(None)
     }
 
@@ -178,21 +179,29 @@ impl<R: Restraint> Fluid<R> {
         // where the next step looks at changes only.
         let reach = self.farthest + (self.fastest + self.hardest * dt) * dt;
         if reach > half_skin && self.scratch.changes.is_known(n) {
+            let clock = Instant::now();
             self.list_in_between();
+            report.seconds.neighbours += clock.elapsed().as_secs_f64();
             report.listings += 1;
         }
+        let clock = Instant::now();
         self.kick_and_drift(dt)?;
         self.time += dt;
         report.moved =
             if self.restraint.is_some() { self.scratch.moved.movers.len() } else { n } as u64;
-        if self.emit_and_drain(&mut report) || self.farthest > half_skin {
+        let lists_are_old = self.emit_and_drain(&mut report) || self.farthest > half_skin;
+        report.seconds.motion = clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        if lists_are_old {
             self.list_neighbours();
-            self.evaluate_all();
+            report.seconds.neighbours += clock.elapsed().as_secs_f64();
             report.listings += 1;
+        }
+        if lists_are_old || !self.evaluate_changes(&mut report) {
+            self.evaluate_all(&mut report.seconds);
             report.sweeps = 1;
-        } else if !self.evaluate_changes(&mut report) {
-            self.evaluate_all();
-            report.sweeps = 1;
+        } else {
+            report.seconds.changes = clock.elapsed().as_secs_f64();
         }
         if report.sweeps == 1 {
             let n_pairs = self.neighbours.n_pairs() as u64;
@@ -327,7 +336,8 @@ impl<R: Restraint> Fluid<R> {
 
     /// Densities, pressures and accelerations of all particles, from nothing but their positions and
     /// effective velocities.
-    fn evaluate_all(&mut self) {
+    fn evaluate_all(&mut self, seconds: &mut Seconds) {
+        let clock = Instant::now();
         let State { x, w, a, density, .. } = &mut self.state;
         sweep::densities(&self.laws, x, &mut self.touched, &mut self.neighbours, density);
         for ((x, w), &density) in x.iter_mut().zip(w.iter_mut()).zip(density.iter()) {
@@ -337,6 +347,8 @@ impl<R: Restraint> Fluid<R> {
         for (x, &density) in self.touched.x.iter_mut().zip(&self.touched.density) {
             x[3] = self.laws.pressure_term(density);
         }
+        seconds.density += clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
         sweep::accelerations(&self.laws, x, w, &self.touched, &mut self.neighbours, a);
         let gravity = self.settings.gravity;
         for a in a {
@@ -353,6 +365,7 @@ impl<R: Restraint> Fluid<R> {
                 self.scratch.changes.forget();
             }
         }
+        seconds.force += clock.elapsed().as_secs_f64();
     }
 }
 

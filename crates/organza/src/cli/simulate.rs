@@ -85,7 +85,10 @@ pub(crate) fn finish(mut run: Run, quiet: bool) -> Result<(), Failure> {
     loop {
         match run.next_frame() {
             Ok(Some(report)) => {
-                progress.done(report.frame, || format!("{} faces", report.faces));
+                progress.done(report.frame, || match &report.fluid {
+                    Some(fluid) if report.faces == 0 => format!("{} particles", fluid.particles),
+                    _ => format!("{} faces", report.faces),
+                });
                 report.warnings.iter().for_each(|warning| progress.warn(warning));
                 summary.add(&report);
             }

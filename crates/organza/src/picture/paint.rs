@@ -15,12 +15,15 @@ const BACK: Rgb = [217, 182, 138];
 /// What the colours of a picture show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Colouring {
-    /// Each garment in its colour, the back in another.
+    /// Each garment in its colour, the back in another. Particles in blue that move freely, in green
+    /// in transition, in red at rest.
     #[default]
     Plain,
     /// The larger principal stretch of every triangle, from dark violet at [`STRETCH_RANGE`]'s start
     /// over green at rest to yellow at its end.
     Stretch,
+    /// The speed of every particle, from dark violet at rest to yellow at the greatest of the recording.
+    Speed,
 }
 
 /// The colours of one garment.
@@ -33,7 +36,7 @@ pub(super) enum OwnedPaint {
 impl Colouring {
     pub(super) fn of(self, garment: &OwnedGarment) -> OwnedPaint {
         match self {
-            Colouring::Plain => {
+            Colouring::Plain | Colouring::Speed => {
                 let [r, g, b, _] = garment.color;
                 // A float cast saturates: no colour can leave its range.
                 OwnedPaint::Sides { front: [r, g, b].map(|c| (255.0 * c).round() as u8) }

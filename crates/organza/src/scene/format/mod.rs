@@ -2,6 +2,7 @@
 //! published JSON schema. [`Scene`](super::Scene) is what a valid file means.
 
 mod cloth;
+mod fluid;
 mod handle;
 mod mesh;
 mod obstacle;
@@ -9,6 +10,7 @@ mod solver;
 mod view;
 
 pub use cloth::*;
+pub use fluid::*;
 pub use handle::*;
 pub use mesh::*;
 pub use obstacle::*;
@@ -58,8 +60,8 @@ pub struct SceneFile {
     /// Relative residual at which iterative linear solvers stop (1).
     #[serde(default = "default::linear_tolerance")]
     pub linear_tolerance: f64,
-    /// The pieces of cloth.
-    #[schemars(length(min = 1))]
+    /// The pieces of cloth; a scene has cloth or fluid.
+    #[serde(default)]
     pub cloths: Vec<ClothFile>,
     /// What holds or moves vertices of the cloths.
     #[serde(default)]
@@ -67,6 +69,9 @@ pub struct SceneFile {
     /// Bodies that cloth cannot pass.
     #[serde(default)]
     pub obstacles: Vec<ObstacleFile>,
+    /// Fluids, at most one for now. Cloth and fluid pass through each other.
+    #[serde(default)]
+    pub fluids: Vec<FluidFile>,
     /// How things touch. Absent means that cloth does not touch cloth, and that obstacles, if there
     /// are any, are touched with the default numbers.
     #[serde(default)]

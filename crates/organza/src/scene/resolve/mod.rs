@@ -2,6 +2,7 @@
 
 mod animated;
 mod cloth;
+mod fluid;
 mod handle;
 mod mesh;
 mod obstacle;
@@ -47,8 +48,8 @@ pub(super) fn resolve(
     }
     top.key("recording.checkpoint_every_frames")
         .at_least(file.recording.checkpoint_every_frames, 1);
-    if file.cloths.is_empty() {
-        top.key("cloths").complain("a scene needs at least one cloth");
+    if file.cloths.is_empty() && file.fluids.is_empty() {
+        top.key("cloths").complain("a scene needs at least one cloth or fluid");
     }
     for (key, n, limit) in [
         ("cloths", file.cloths.len(), limits::MAX_CLOTHS),
@@ -77,6 +78,9 @@ pub(super) fn resolve(
     };
     let contact = obstacle::contact(file.contact, !file.obstacles.is_empty(), &top.key("contact"));
     let obstacles = obstacle::resolve(file.obstacles, &top.key("obstacles"), context);
+    let duration = f64::from(file.frames) / file.frames_per_second;
+    let fluids = top.key("fluids");
+    let fluid = fluid::resolve(file.fluids, obstacles.as_deref(), file.gravity, duration, &fluids);
     let up = super::data::up(file.gravity);
     let camera_path = view::path(file.camera.as_ref(), &file.shots, up, &top);
     let view = file.view.and_then(|view| view::settings(view, file.camera.is_some(), &top));
@@ -94,6 +98,7 @@ pub(super) fn resolve(
         cloths: cloths?,
         handles: handles?,
         obstacles: obstacles?,
+        fluid: fluid?,
         contact,
         camera: file.camera,
         camera_path,
