@@ -359,6 +359,7 @@ fn what_a_recording_carries() {
             time_s: 0.0,
             garments: &garments,
             obstacles: &[],
+            fluid: None,
             camera: None,
             transforms: &[],
             report: &serde_json::json!({"frame": "none"}),

@@ -306,28 +306,29 @@ impl<R: Restraint> Fluid<R> {
         self.laws.kernel.support() + self.settings.skin * self.settings.spacing
     }
 
-    /// Densities, pressures and accelerations by what the step has changed. Returns false if that is
-    /// so much that everything has to be computed anew.
+    /// Densities, pressures and accelerations by what the step has changed. Returns false if so much
+    /// moves that everything has to be computed anew.
     fn evaluate_changes(&mut self, report: &mut StepReport) -> bool {
         let Some((_, settings)) = &self.restraint else { return false };
         let n = self.state.len();
         let (moved, changes) = (&self.scratch.moved, &mut self.scratch.changes);
         // Nothing held is nothing gained: the bits are then those of a fluid without a policy.
         let most_movers = settings.sweep_above * n as f64;
-        if !moved.any_held || moved.movers.len() as f64 >= most_movers || !changes.may_try(n) {
+        if !moved.any_held || moved.movers.len() as f64 >= most_movers || !changes.is_known(n) {
             return false;
         }
         let update = Update {
             laws: &self.laws,
             walls: &mut self.touched,
-            neighbours: &self.neighbours,
+            neighbours: &mut self.neighbours,
             state: &mut self.state,
             movers: &moved.movers,
             stopped: &moved.stopped,
             tolerance: settings.pressure_tolerance,
+            gravity: self.settings.gravity.into(),
             changes,
         };
-        let Some(looked) = update.run() else { return false };
+        let looked = update.run();
         report.changed += looked.changed;
         report.density_pairs += looked.density_pairs;
         report.force_pairs += looked.force_pairs;
@@ -339,7 +340,7 @@ impl<R: Restraint> Fluid<R> {
     fn evaluate_all(&mut self, seconds: &mut Seconds) {
         let clock = Instant::now();
         let State { x, w, a, density, .. } = &mut self.state;
-        sweep::densities(&self.laws, x, &mut self.touched, &mut self.neighbours, density);
+        sweep::densities(&self.laws, x, &mut self.touched, &mut self.neighbours, density, None);
         for ((x, w), &density) in x.iter_mut().zip(w.iter_mut()).zip(density.iter()) {
             x[3] = self.laws.pressure_term(density);
             w[3] = density;
@@ -349,13 +350,8 @@ impl<R: Restraint> Fluid<R> {
         }
         seconds.density += clock.elapsed().as_secs_f64();
         let clock = Instant::now();
-        sweep::accelerations(&self.laws, x, w, &self.touched, &mut self.neighbours, a);
-        let gravity = self.settings.gravity;
-        for a in a {
-            for k in 0..3 {
-                a[k] += gravity[k];
-            }
-        }
+        let all = (self.settings.gravity.into(), None);
+        sweep::accelerations(&self.laws, x, w, &self.touched, &mut self.neighbours, all, a);
         if let Some((_, settings)) = &self.restraint {
             // While most particles move the next step will not look at changes either.
             let n_movers = self.scratch.moved.movers.len() as f64;

@@ -28,11 +28,11 @@ pub(crate) fn columns(water: &Water) -> Vec<(String, Column)> {
         walls,
         greatest: [fastest, hardest, farthest],
         layers,
-        incremental: (known, wait, pause),
+        incremental,
     } = water.fluid.checkpoint();
     let mut columns = vec![
         (NUMBERS, Column::F64(vec![time, fastest, hardest, farthest])),
-        (COUNTS, Column::U64(vec![next_id, known.into(), wait.into(), pause.into()])),
+        (COUNTS, Column::U64(vec![next_id, incremental.into()])),
         (NAMES, Column::U64(id)),
         (LAYERS, Column::U64(layers)),
         (DENSITIES, Column::F64(density)),
@@ -63,8 +63,7 @@ pub(crate) fn restore(water: &mut Water, checkpoint: &Checkpoint) -> Result<(), 
         if rest.is_empty() { Ok(points.to_vec()) } else { Err(bad(column)) }
     };
     let &[time, fastest, hardest, farthest] = f64s(NUMBERS)? else { return Err(bad(NUMBERS)) };
-    let &[next_id, known, wait, pause] = u64s(COUNTS)? else { return Err(bad(COUNTS)) };
-    let count = |n: u64| u32::try_from(n).map_err(|_| bad(COUNTS));
+    let &[next_id, incremental] = u64s(COUNTS)? else { return Err(bad(COUNTS)) };
     let (walls, rest) = f64s(WALLS)?.as_chunks::<2>();
     if !rest.is_empty() {
         return Err(bad(WALLS));
@@ -83,7 +82,7 @@ pub(crate) fn restore(water: &mut Water, checkpoint: &Checkpoint) -> Result<(), 
         walls: walls.to_vec(),
         greatest: [fastest, hardest, farthest],
         layers: u64s(LAYERS)?.to_vec(),
-        incremental: (known != 0, count(wait)?, count(pause)?),
+        incremental: incremental != 0,
     };
     water.fluid.restore(&state).map_err(|source| RestoreError::Fluid { frame, source })
 }

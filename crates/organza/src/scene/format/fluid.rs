@@ -241,5 +241,5 @@ fn bleeding_s() -> Option<f64> {
     Some(0.05)
 }
 fn sweep_above() -> f64 {
-    0.3
+    0.4
 }
