@@ -2,7 +2,7 @@
 
 use super::program::Simulation;
 use super::report::{Figure, Report};
-use super::{Benchmark, Context, arcsim};
+use super::{Benchmark, Context, arcsim, statistics};
 use crate::command::{Failure, say};
 use std::fs;
 
@@ -81,30 +81,9 @@ fn growth(context: &Context, report: &mut Report) -> Result<(), Failure> {
         points.push((triangles.ln(), seconds.ln()));
     }
     let note = "Slope of the logarithm of the time against that of the number of triangles, least squares.";
-    report
-        .add("contact.scaling.exponent", slope(&points).and_then(|s| Figure::exact(s, "1", note)));
+    report.add(
+        "contact.scaling.exponent",
+        statistics::slope(&points).and_then(|s| Figure::exact(s, "1", note)),
+    );
     Ok(())
-}
-
-/// The slope of the straight line that fits best; `None` without two different points.
-fn slope(points: &[(f64, f64)]) -> Option<f64> {
-    let n = points.len() as f64;
-    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
-    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
-    let along: f64 = points.iter().map(|p| (p.0 - x) * (p.0 - x)).sum();
-    let rise: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
-    (along > 0.0).then(|| rise / along)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::slope;
-
-    #[test]
-    fn slopes_of_straight_lines_are_exact() {
-        let line: Vec<(f64, f64)> = [0.0, 1.0, 4.0].iter().map(|&x| (x, 3.0 - 2.0 * x)).collect();
-        assert!((slope(&line).unwrap() + 2.0).abs() < 1e-12);
-        assert_eq!(slope(&line[..1]), None);
-        assert_eq!(slope(&[]), None);
-    }
 }

@@ -7,6 +7,7 @@
 mod arcsim;
 mod contact;
 mod cpu_time;
+mod example;
 mod fixed_or_adaptive;
 mod flag;
 mod machine;
@@ -14,6 +15,7 @@ mod options;
 mod program;
 mod report;
 mod run_info;
+mod sph;
 mod statistics;
 mod surface;
 
@@ -42,7 +44,7 @@ struct Benchmark {
 }
 
 /// All benchmarks, in the order in which they run.
-const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK, contact::BENCHMARK];
+const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK, contact::BENCHMARK, sph::BENCHMARK];
 
 /// What a benchmark works with.
 struct Context {

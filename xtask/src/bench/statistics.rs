@@ -20,6 +20,16 @@ pub(super) fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
 }
 
+/// The slope of the straight line that fits best; `None` without two different points.
+pub(super) fn slope(points: &[(f64, f64)]) -> Option<f64> {
+    let n = points.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
+    let (x, y) = (mean(|p| p.0), mean(|p| p.1));
+    let along: f64 = points.iter().map(|p| (p.0 - x) * (p.0 - x)).sum();
+    let rise: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
+    (along > 0.0).then(|| rise / along)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -38,5 +48,13 @@ mod tests {
             (median(&even), spread(&even), mean(&even)),
             (Some(3.0), Some([1.0, 9.0]), Some(4.0))
         );
+    }
+
+    #[test]
+    fn slopes_of_straight_lines_are_exact() {
+        let line: Vec<(f64, f64)> = [0.0, 1.0, 4.0].iter().map(|&x| (x, 3.0 - 2.0 * x)).collect();
+        assert!((slope(&line).unwrap() + 2.0).abs() < 1e-12);
+        assert_eq!(slope(&line[..1]), None);
+        assert_eq!(slope(&[]), None);
     }
 }
