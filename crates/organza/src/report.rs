@@ -271,7 +271,8 @@ impl FrameReport {
             }),
             view: remeshed.and_then(|r| r.view),
             fluid: None,
-            kinetic_energy_j: world.cloth.kinetic_energy(),
+            // A sum of nothing is -0.
+            kinetic_energy_j: world.cloth.kinetic_energy() + 0.0,
             skipped: world.skipped(),
             seconds,
         }

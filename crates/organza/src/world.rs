@@ -1,6 +1,7 @@
 //! The world: state and policies of a running scene, and the step.
 
 mod bodies;
+mod flow;
 mod tangled;
 #[cfg(test)]
 mod tests;
@@ -11,7 +12,7 @@ use crate::fluid::Water;
 use crate::handles::{Handles, by_name};
 use crate::obstacle::Obstacle;
 use crate::remeshing::Remeshing;
-use crate::report::{FluidSummary, FrameReport, Seconds, StretchRange};
+use crate::report::{FrameReport, Seconds, StretchRange};
 use crate::scene::format::{Integrator, LinearSolver as Method};
 use crate::scene::{Dialect, Loaded};
 use bodies::{Bodies, appearing_in_cloth};
@@ -318,20 +319,6 @@ impl World {
         report.fluid = fluid;
         report.warnings = std::mem::take(&mut self.tangled.warnings);
         Ok(report)
-    }
-
-    /// Lets a frame's time go by for the fluid.
-    fn move_fluid(
-        &mut self,
-        frame: u64,
-        seconds: &mut Seconds,
-    ) -> Result<Option<FluidSummary>, StepError> {
-        let Some(water) = &mut self.fluid else { return Ok(None) };
-        let clock = Instant::now();
-        let done = water.advance(self.frame_s);
-        let done = done.map_err(|source| StepError::Fluid { frame, source })?;
-        seconds.fluid = clock.elapsed().as_secs_f64();
-        Ok(Some(water.summary(&done, self.frame_s)))
     }
 
     /// True if there is any cloth.

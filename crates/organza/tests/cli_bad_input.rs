@@ -60,7 +60,11 @@ fn scenes() {
         ("not-json", "frames = 3".into(), &["s.json5:1:"]),
         ("cut", SCENE[..40].into(), &["s.json5:2:"]),
         ("list", "[1, 2]".into(), &["s.json5:1:1: expected an object, got a list"]),
-        ("no-cloth", "{frames: 3}".into(), &["s.json5:1:1: ", "`cloths`"]),
+        (
+            "no-cloth",
+            "{frames: 3}".into(),
+            &["s.json5:1:1: ", "cloths: a scene needs at least one cloth or fluid"],
+        ),
         ("zero-frames", format!("{{frames: 0, {CLOTH}}}"), &["s.json5:1:10: frames: "]),
         ("negative-frames", format!("{{frames: -3, {CLOTH}}}"), &["s.json5:1:10: frames: "]),
         ("text-frames", format!("{{frames: 'many', {CLOTH}}}"), &["s.json5:1:10: frames: "]),

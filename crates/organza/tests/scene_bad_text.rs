@@ -162,7 +162,7 @@ fn unknown_and_missing_keys() {
         "'a`, expected `b': 1,",
         "s.json5:1:13: a`, expected `b: unknown key `a`, expected `b`, \
         expected one of $schema, name, frames, frames_per_second, substeps, gravity, wind, integrator, \
-        newton, linear_solver, linear_tolerance, cloths, handles, obstacles, contact, camera, \
+        newton, linear_solver, linear_tolerance, cloths, handles, obstacles, fluids, contact, camera, \
         shots, view, recording",
     );
 }

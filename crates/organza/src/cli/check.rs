@@ -95,6 +95,9 @@ fn write(out: &mut String, loaded: &Loaded, world: &World) -> fmt::Result {
             },
         )?,
     }
+    if !world.has_cloth() {
+        return Ok(());
+    }
     let wind = scene.wind.as_ref().map_or("none".into(), |w| format!("{:?} m/s", w.velocity));
     writeln!(out, "wind: {wind}")?;
     writeln!(out, "forces: {}", world.force_names().join(", "))
