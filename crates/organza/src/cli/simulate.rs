@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use organza::picture::{poster_path, write_poster};
 use organza::record::{Run, RunError, RunOptions};
 use organza::scene::{self, LoadOptions};
+use organza::world::StepError;
 
 use super::args::Simulate;
 use super::progress::Progress;
@@ -115,6 +116,10 @@ fn half_way(path: &Path, last: u64, error: &RunError) -> Failure {
     let path = path.display();
     let kept = format!("{path} keeps frames 0 to {last}");
     let hint = match error {
+        RunError::Step(StepError::Fluid { .. }) => format!(
+            "{kept}. The same run fails at the same place: give the fluid a larger `domain`, or sinks \
+             where it leaves it"
+        ),
         RunError::Step(_) => format!(
             "{kept}. The same run fails at the same place: try smaller steps, such as \
              --set substeps=16 (`organza resume {path}` helps only if the cause lay outside)"
