@@ -44,6 +44,7 @@ fn main() -> Result<(), Error> {
                 color: [0.8, 0.3, 0.1, 1.0],
             }],
             obstacles: &[],
+            fluid: None,
             // From the side, with z up: x of the picture is x, y of the picture is -z.
             camera: Some(Camera {
                 width_px: 640,

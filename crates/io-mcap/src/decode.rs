@@ -9,7 +9,7 @@ use crate::proto::{
     SceneUpdate,
 };
 use crate::topic::Topic;
-use crate::{Camera, FrameInfo, material};
+use crate::{Camera, FrameInfo, fluid, material};
 
 /// The frame in `geometry` and `report`, or what is wrong with them.
 pub(crate) fn decode(
@@ -42,6 +42,14 @@ pub(crate) fn decode(
     };
     let obstacles = obstacles.into_iter().map(obstacle).collect::<Result<_, _>>()?;
 
+    let fluid = match find(Topic::Fluid) {
+        Some(bytes) => {
+            let particles = fluid::unpack(&message(Topic::Fluid, bytes)?);
+            Some(particles.map_err(|what| format!("{}: {what}", Topic::Fluid.name()))?)
+        }
+        None => None,
+    };
+
     let mut transforms = Vec::new();
     let mut camera_pose = None;
     if let Some(bytes) = find(Topic::Transforms) {
@@ -64,7 +72,7 @@ pub(crate) fn decode(
     };
     let report = decode_report(report)?;
     let FrameInfo { index, time_s } = info;
-    Ok(OwnedFrame { index, time_s, garments, obstacles, camera, transforms, report })
+    Ok(OwnedFrame { index, time_s, garments, obstacles, fluid, camera, transforms, report })
 }
 
 pub(crate) fn decode_report(bytes: &[u8]) -> Result<serde_json::Value, String> {

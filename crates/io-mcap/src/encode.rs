@@ -10,7 +10,7 @@ use crate::proto::{
     SceneEntityDeletion, SceneUpdate, TriangleListPrimitive,
 };
 use crate::topic::Topic;
-use crate::{Camera, Error, Frame, Garment, Obstacle, material};
+use crate::{Camera, Error, Frame, Garment, Obstacle, fluid, material};
 
 /// Frame of reference of everything that is drawn.
 pub(crate) const WORLD: &str = "world";
@@ -70,6 +70,9 @@ pub(crate) fn encode(frame: &Frame<'_>, before: &Shown) -> Result<EncodedFrame, 
     let obstacles = scene(obstacles, &before.obstacles, timestamp);
     if obstacles != SceneUpdate::default() {
         geometry.push((Topic::Obstacles, obstacles.encode_to_vec()));
+    }
+    if let Some(particles) = frame.fluid {
+        geometry.push((Topic::Fluid, fluid::pack(particles, timestamp).encode_to_vec()));
     }
     let transforms = transforms(frame, timestamp);
     if !transforms.is_empty() {

@@ -13,6 +13,8 @@ pub struct Frame<'a> {
     /// Bodies that cloth cannot pass, where they are now, in the order in which they are read back.
     /// Names are unique and not empty; garments may have the same.
     pub obstacles: &'a [Obstacle<'a>],
+    /// The particles of a fluid, if there is one, in the order in which they are read back.
+    pub fluid: Option<&'a [Particle]>,
     /// The camera that watches the scene, if any.
     pub camera: Option<Camera>,
     /// Where rigid things are. The names `world` and `camera` are taken.
@@ -48,6 +50,24 @@ pub struct Obstacle<'a> {
     pub triangles: &'a [[u32; 3]],
     /// Colour: red, green, blue, alpha from 0 to 1.
     pub color: [f32; 4],
+}
+
+/// A particle of a fluid.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Particle {
+    /// Lasting number.
+    pub id: u32,
+    /// World position (m).
+    pub position: [f64; 3],
+    /// Momentum per mass (m/s).
+    pub velocity: [f32; 3],
+    /// Speed with which it changes its place (m/s): less than that of `velocity` where it is
+    /// restrained.
+    pub speed: f32,
+    /// Density (kg/m³).
+    pub density: f32,
+    /// 0 for a particle that moves freely, 1 for one in transition, 2 for one at rest.
+    pub state: u8,
 }
 
 /// A pinhole camera: x to the right of the picture, y down, z forward.
@@ -89,6 +109,8 @@ pub struct OwnedFrame {
     pub garments: Vec<OwnedGarment>,
     /// See [`Frame::obstacles`].
     pub obstacles: Vec<OwnedObstacle>,
+    /// See [`Frame::fluid`].
+    pub fluid: Option<Vec<Particle>>,
     /// See [`Frame::camera`].
     pub camera: Option<Camera>,
     /// See [`Frame::transforms`].

@@ -9,6 +9,7 @@
 //! | `/cloth` | `foxglove.SceneUpdate`: one indexed triangle list per garment, in doubles | every frame |
 //! | `/cloth/material` | `organza.ClothMaterial`: material coordinates of every triangle corner | every frame |
 //! | `/obstacles` | `foxglove.SceneUpdate`: one indexed triangle list per obstacle, in doubles | every frame, if there are any |
+//! | `/fluid` | `foxglove.PointCloud`: a point per particle with velocity, speed, density, number and state | every frame, if there is a fluid |
 //! | `/tf` | `foxglove.FrameTransforms`: rigid transforms into `world`, the camera's among them | if there are any |
 //! | `/camera` | `foxglove.CameraCalibration` | if there is a camera |
 //! | `/frame` | `organza.FrameMark`: frame index, exact time | every frame |
@@ -46,6 +47,7 @@
 //!         time_s,
 //!         garments: &[garment],
 //!         obstacles: &[],
+//!         fluid: None,
 //!         camera: None,
 //!         transforms: &[],
 //!         report: &json!({ "substeps": 8 }),
@@ -72,6 +74,7 @@ mod chunk;
 mod decode;
 mod encode;
 mod error;
+mod fluid;
 mod frame;
 mod header;
 mod limits;
@@ -93,7 +96,7 @@ pub use checkpoint::{Checkpoint, CheckpointInfo, Column};
 pub use error::Error;
 pub use frame::{
     Camera, Frame, FrameInfo, Garment, Obstacle, OwnedFrame, OwnedGarment, OwnedObstacle,
-    OwnedTransform, Transform,
+    OwnedTransform, Particle, Transform,
 };
 pub use header::{Attachment, AttachmentInfo, Header, Overwrite};
 pub use limits::Limits;

@@ -112,6 +112,35 @@ pub(crate) struct TriangleListPrimitive {
     pub(crate) indices: Vec<u32>,
 }
 
+/// `foxglove.PointCloud`
+#[derive(Clone, PartialEq, Message)]
+pub(crate) struct PointCloud {
+    #[prost(message, optional, tag = "1")]
+    pub(crate) timestamp: Option<Timestamp>,
+    #[prost(string, tag = "2")]
+    pub(crate) frame_id: String,
+    #[prost(message, optional, tag = "3")]
+    pub(crate) pose: Option<Pose>,
+    #[prost(fixed32, tag = "4")]
+    pub(crate) point_stride: u32,
+    #[prost(message, repeated, tag = "5")]
+    pub(crate) fields: Vec<PackedElementField>,
+    #[prost(bytes = "vec", tag = "6")]
+    pub(crate) data: Vec<u8>,
+}
+
+/// `foxglove.PackedElementField`
+#[derive(Clone, PartialEq, Message)]
+pub(crate) struct PackedElementField {
+    #[prost(string, tag = "1")]
+    pub(crate) name: String,
+    #[prost(fixed32, tag = "2")]
+    pub(crate) offset: u32,
+    /// The `NumericType`.
+    #[prost(int32, tag = "3")]
+    pub(crate) r#type: i32,
+}
+
 /// `foxglove.FrameTransforms`
 #[derive(Clone, PartialEq, Message)]
 pub(crate) struct FrameTransforms {

@@ -17,12 +17,14 @@ pub(crate) enum Topic {
     Report,
     /// Exact state.
     Checkpoint,
-    /// The obstacles as drawn; last, as the order gives the numbers in the file.
+    /// The obstacles as drawn.
     Obstacles,
+    /// The particles of a fluid; last, as the order gives the numbers in the file.
+    Fluid,
 }
 
 impl Topic {
-    pub(crate) const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 9] = [
         Self::Cloth,
         Self::Material,
         Self::Transforms,
@@ -31,11 +33,12 @@ impl Topic {
         Self::Report,
         Self::Checkpoint,
         Self::Obstacles,
+        Self::Fluid,
     ];
 
     /// What a frame has before its mark.
-    pub(crate) const GEOMETRY: [Self; 5] =
-        [Self::Cloth, Self::Material, Self::Obstacles, Self::Transforms, Self::Camera];
+    pub(crate) const GEOMETRY: [Self; 6] =
+        [Self::Cloth, Self::Material, Self::Obstacles, Self::Fluid, Self::Transforms, Self::Camera];
 
     /// Topic name in the file.
     pub(crate) const fn name(self) -> &'static str {
@@ -48,6 +51,7 @@ impl Topic {
             Self::Report => "/report",
             Self::Checkpoint => "/checkpoint",
             Self::Obstacles => "/obstacles",
+            Self::Fluid => "/fluid",
         }
     }
 
@@ -60,6 +64,7 @@ impl Topic {
         match self {
             Self::Cloth | Self::Obstacles => "foxglove.SceneUpdate",
             Self::Material => "organza.ClothMaterial",
+            Self::Fluid => "foxglove.PointCloud",
             Self::Transforms => "foxglove.FrameTransforms",
             Self::Camera => "foxglove.CameraCalibration",
             Self::Mark => "organza.FrameMark",
@@ -99,7 +104,7 @@ impl Topic {
 
 /// A set of topics.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct TopicSet(u8);
+pub(crate) struct TopicSet(u16);
 
 impl TopicSet {
     pub(crate) fn insert(&mut self, topic: Topic) {

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use common::{checkpoint_bits, frame_bits, lend, open};
 use io_mcap::{
     Attachment, Camera, Checkpoint, Column, Header, OwnedFrame, OwnedGarment, OwnedObstacle,
-    OwnedTransform, Recorder, Status,
+    OwnedTransform, Particle, Recorder, Status,
 };
 use proptest::collection::{btree_map, vec};
 use proptest::prelude::*;
@@ -84,6 +84,7 @@ fn frame() -> impl Strategy<Value = OwnedFrame> {
             time_s,
             garments: garments.into_iter().map(|(name, g)| OwnedGarment { name, ..g }).collect(),
             obstacles: obstacles.into_iter().map(|(name, o)| OwnedObstacle { name, ..o }).collect(),
+            fluid: (index % 2 == 0).then(|| vec![Particle { speed: 0.5, ..Particle::default() }]),
             camera,
             transforms: transforms
                 .into_iter()

@@ -85,7 +85,7 @@ fn a_recorder_dropped_early_leaves_a_file_that_tells() {
     assert!(reason.contains("closed before the run ended"), "{reason}");
     // Viewers have their summary all the same.
     let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
-    assert_eq!(summary.stats.unwrap().message_count, 7);
+    assert_eq!(summary.stats.unwrap().message_count, 8);
 }
 
 /// Counts the bytes read through it.

@@ -39,7 +39,12 @@ fn messages(set: &FileDescriptorSet) -> BTreeMap<String, DescriptorProto> {
 #[test]
 fn foxglove_messages_are_as_published() {
     let mut described = BTreeSet::new();
-    for name in ["foxglove.SceneUpdate", "foxglove.FrameTransforms", "foxglove.CameraCalibration"] {
+    for name in [
+        "foxglove.SceneUpdate",
+        "foxglove.FrameTransforms",
+        "foxglove.CameraCalibration",
+        "foxglove.PointCloud",
+    ] {
         for (name, message) in messages(&file_set(name)) {
             if !name.starts_with("foxglove.") {
                 continue;

@@ -134,6 +134,20 @@ impl Mesh {
         Ok(mesh)
     }
 
+    /// A mesh without any vertex or triangle.
+    pub fn empty() -> Mesh {
+        Mesh {
+            twin: Vec::new(),
+            tri: Vec::new(),
+            material: Vec::new(),
+            panel: Vec::new(),
+            out: Vec::new(),
+            uid: Vec::new(),
+            next_uid: 0,
+            epoch: 0,
+        }
+    }
+
     /// The same mesh with the lasting names it had when it was saved (a checkpoint).
     ///
     /// # Errors

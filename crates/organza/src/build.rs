@@ -7,6 +7,7 @@ mod piece;
 pub(crate) use piece::Piece;
 
 use crate::contact::ContactSettings;
+use crate::fluid::{self, Water};
 use crate::handles::Handles;
 use crate::obstacle::Obstacle;
 use crate::scene::{self, Loaded, MeshSource, Scene, limits};
@@ -85,6 +86,14 @@ pub enum BuildError {
         /// What is wrong.
         message: String,
     },
+    /// A fluid cannot be as described.
+    #[error("fluids[0].{key}: {message}")]
+    Fluid {
+        /// The key of the fluid, such as `blocks`.
+        key: String,
+        /// What is wrong.
+        message: String,
+    },
     /// The system would be too large.
     #[error("the scene is too large: {0}")]
     TooLarge(String),
@@ -114,6 +123,8 @@ pub struct Built {
     pub handles: Handles,
     /// Bodies that cloth cannot pass.
     pub obstacles: Vec<Obstacle>,
+    /// The fluid, if the scene has one.
+    pub fluid: Option<Water>,
     /// How things touch; absent where nothing does.
     pub contact: Option<ContactSettings>,
     /// What the user should know.
@@ -166,12 +177,20 @@ pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
         };
         BuildError::Mesh { cloth: garments[cloth].name.clone(), source }
     };
-    let mesh = Mesh::new(positions.len(), triangles, material, panels).map_err(error)?;
+    let mesh = match triangles.len() {
+        0 => Mesh::empty(),
+        _ => Mesh::new(positions.len(), triangles, material, panels).map_err(error)?,
+    };
     let density = fabrics.iter().map(|f| f.density).collect();
     let cloth = ClothState::new(mesh, positions, velocities, density).map_err(error)?;
     let obstacles = obstacle::obstacles(loaded)?;
+    let fluid = scene.fluid.as_ref().map(|fluid| fluid::water(fluid, &obstacles)).transpose();
+    let fluid = fluid.map_err(|(key, message)| BuildError::Fluid { key, message })?;
+    if fluid.is_some() && !garments.is_empty() {
+        warnings.push("cloth and fluid pass through each other: their contact is not built".into());
+    }
     let contact = scene.contact;
-    Ok(Built { cloth, fabrics, garments, handles, obstacles, contact, warnings })
+    Ok(Built { cloth, fabrics, garments, handles, obstacles, fluid, contact, warnings })
 }
 
 /// The cloth that a panel belongs to.

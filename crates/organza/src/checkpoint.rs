@@ -1,5 +1,7 @@
 //! The exact state of a world, to and from the columns of a recording.
 
+use crate::fluid;
+use crate::handles::Handles;
 use crate::world::World;
 use io_mcap::{Checkpoint, Column};
 use mesh_core::{ClothState, Material2, Mesh, MeshError, World3};
@@ -23,6 +25,14 @@ pub enum RestoreError {
         /// Why.
         source: MeshError,
     },
+    /// The state is none of this fluid.
+    #[error("the checkpoint of frame {frame}: {source}")]
+    Fluid {
+        /// The frame.
+        frame: u64,
+        /// Why.
+        source: sph::FluidError,
+    },
 }
 
 fn flat(vectors: &[World3]) -> Column {
@@ -32,6 +42,13 @@ fn flat(vectors: &[World3]) -> Column {
 /// Saves the state and makes the world forget what is not part of it, see [`World::forget`].
 pub fn save(world: &mut World) -> Checkpoint {
     world.forget();
+    let mut columns = if world.has_cloth() { cloth_columns(world) } else { Vec::new() };
+    columns.extend(world.fluid.iter().flat_map(fluid::columns));
+    Checkpoint { frame: world.frame, time_s: world.time(), columns }
+}
+
+/// The state of the cloth and of what holds it.
+fn cloth_columns(world: &World) -> Vec<(String, Column)> {
     let mesh = &world.cloth.mesh;
     let material = mesh.material().iter().flatten().flat_map(|u| [u.x, u.y]).collect();
     let mut columns = vec![
@@ -51,7 +68,7 @@ pub fn save(world: &mut World) -> Checkpoint {
         columns.push((format!("handle {k} uids"), Column::U64(names)));
         columns.push((format!("handle {k} homes"), flat(&homes)));
     }
-    Checkpoint { frame: world.frame, time_s: world.time(), columns }
+    columns
 }
 
 /// Puts a world of the same scene into a saved state.
@@ -59,6 +76,27 @@ pub fn save(world: &mut World) -> Checkpoint {
 /// # Errors
 /// If the checkpoint does not fit; the world is then unchanged.
 pub fn restore(world: &mut World, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
+    let cloth = match world.has_cloth() {
+        true => Some(restored_cloth(world, checkpoint)?),
+        false => None,
+    };
+    if let Some(water) = &mut world.fluid {
+        fluid::restore(water, checkpoint)?;
+    }
+    if let Some((cloth, handles)) = cloth {
+        (world.cloth, world.handles) = (cloth, handles);
+    }
+    world.frame = checkpoint.frame;
+    world.forget();
+    world.note_tangles();
+    Ok(())
+}
+
+/// The cloth of a saved state, and what holds it.
+fn restored_cloth(
+    world: &World,
+    checkpoint: &Checkpoint,
+) -> Result<(ClothState, Handles), RestoreError> {
     let frame = checkpoint.frame;
     let bad = |column| RestoreError::Column { frame, column };
     let f64s = |name: &str, column| match checkpoint.column(name) {
@@ -113,12 +151,7 @@ pub fn restore(world: &mut World, checkpoint: &Checkpoint) -> Result<(), Restore
         let place = |x: World3| (!x.x.is_nan()).then_some(x);
         handle.held = names.iter().copied().zip(homes.into_iter().map(place)).collect();
     }
-    world.cloth = cloth;
-    world.handles = handles;
-    world.frame = frame;
-    world.forget();
-    world.note_tangles();
-    Ok(())
+    Ok((cloth, handles))
 }
 
 #[cfg(test)]

@@ -1,22 +1,24 @@
 //! Frames of a recording as mesh files for other programs, one file per frame.
 
+mod bgeo;
 mod error;
 mod files;
 mod obj;
 mod ply;
 
+pub use bgeo::write_fluid_bgeo;
 pub use error::ExportError;
 pub use files::{FilesError, NumberedFiles};
-pub use obj::{write_obj, write_obstacles_obj};
-pub use ply::{write_obstacles_ply, write_ply};
+pub use obj::{write_fluid_obj, write_obj, write_obstacles_obj};
+pub use ply::{write_fluid_ply, write_obstacles_ply, write_ply};
 
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 
-use io_mcap::{OwnedGarment, OwnedObstacle, Recording, Status};
+use io_mcap::{OwnedGarment, OwnedObstacle, Particle, Recording, Status};
 
-use crate::record::{FrameRange, OBSTACLES, RunError};
+use crate::record::{FLUID, FrameRange, OBSTACLES, RunError};
 
 /// A format of mesh files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +27,8 @@ pub enum Format {
     Obj,
     /// Binary PLY, see [`write_ply`].
     Ply,
+    /// Particles alone, as Partio and SPlisHSPlasH read them, see [`write_fluid_bgeo`].
+    Bgeo,
 }
 
 impl Format {
@@ -33,24 +37,39 @@ impl Format {
         match self {
             Format::Obj => "obj",
             Format::Ply => "ply",
+            Format::Bgeo => "bgeo",
         }
     }
 
     /// Writes the garments of one frame.
     ///
     /// # Errors
-    /// Those of `out`, and `InvalidInput` for a coordinate that is not finite.
+    /// Those of `out`, and `InvalidInput` for a coordinate that is not finite or a format without
+    /// meshes.
     pub fn write(self, out: &mut impl Write, garments: &[OwnedGarment]) -> io::Result<()> {
         match self {
             Format::Obj => write_obj(out, garments),
             Format::Ply => write_ply(out, garments),
+            Format::Bgeo => Err(no_meshes()),
+        }
+    }
+
+    /// Writes the particles of one frame.
+    ///
+    /// # Errors
+    /// Those of `out`, and `InvalidInput` for a coordinate that is not finite.
+    pub fn write_fluid(self, out: &mut impl Write, particles: &[Particle]) -> io::Result<()> {
+        match self {
+            Format::Obj => write_fluid_obj(out, particles),
+            Format::Ply => write_fluid_ply(out, particles),
+            Format::Bgeo => write_fluid_bgeo(out, particles),
         }
     }
 
     /// Writes the obstacles of one frame.
     ///
     /// # Errors
-    /// Those of `out`, and `InvalidInput` for a coordinate that is not finite.
+    /// As for [`Format::write`].
     pub fn write_obstacles(
         self,
         out: &mut impl Write,
@@ -59,6 +78,7 @@ impl Format {
         match self {
             Format::Obj => write_obstacles_obj(out, obstacles),
             Format::Ply => write_obstacles_ply(out, obstacles),
+            Format::Bgeo => Err(no_meshes()),
         }
     }
 }
@@ -74,7 +94,8 @@ pub struct Written {
 
 /// Writes the frames `range` of the recording at `path` to files `frame_00000.obj` and so on in
 /// `folder`, which is made if it is not there. Obstacles, where there are any, go to files of their
-/// own beside them, `obstacles_00000.obj` and so on. `each` is called after every frame with the
+/// own beside them, `obstacles_00000.obj` and so on; so do the particles of a fluid,
+/// `fluid_00000.obj`. `each` is called after every frame with the
 /// number of frames written and to be written.
 ///
 /// # Errors
@@ -91,14 +112,25 @@ pub fn export(
     let mut recording = Recording::open(path).map_err(RunError::recording(path))?;
     let frames = selected(&recording, path, range)?;
     // Obstacles come and go; the recording names all of them.
-    let with_obstacles = recording.metadata().contains_key(OBSTACLES);
-    let names: &[&str] = if with_obstacles { &["frame", "obstacles"] } else { &["frame"] };
-    let files = NumberedFiles::prepare(folder, names, format.extension(), &frames, overwrite)?;
+    let with_meshes = format != Format::Bgeo;
+    let with_obstacles = with_meshes && recording.metadata().contains_key(OBSTACLES);
+    let with_fluid = recording.metadata().contains_key(FLUID);
+    if !with_meshes && !with_fluid {
+        return Err(ExportError::NoFluid { path: path.to_owned() });
+    }
+    let first = recording.frame(frames[0]).map_err(RunError::recording(path))?;
+    let with_garments = with_meshes && !(with_fluid && first.garments.is_empty());
+    let parts = [(with_garments, "frame"), (with_obstacles, "obstacles"), (with_fluid, "fluid")];
+    let names: Vec<&str> = parts.iter().filter(|(with, _)| *with).map(|(_, n)| *n).collect();
+    let files = NumberedFiles::prepare(folder, &names, format.extension(), &frames, overwrite)?;
     for (k, &index) in frames.iter().enumerate() {
         let frame = recording.frame(index).map_err(RunError::recording(path))?;
-        files.write(names[0], index, |out| format.write(out, &frame.garments))?;
-        if let Some(name) = names.get(1) {
-            files.write(name, index, |out| format.write_obstacles(out, &frame.obstacles))?;
+        for &name in &names {
+            files.write(name, index, |out| match name {
+                "frame" => format.write(out, &frame.garments),
+                "obstacles" => format.write_obstacles(out, &frame.obstacles),
+                _ => format.write_fluid(out, frame.fluid.as_deref().unwrap_or_default()),
+            })?;
         }
         each(k + 1, frames.len());
     }
@@ -123,6 +155,10 @@ pub(crate) fn selected(
     Ok(frames)
 }
 
+fn no_meshes() -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, "the format has no meshes")
+}
+
 /// Refuses numbers that other programs cannot read.
 fn check_finite(garments: &[OwnedGarment]) -> io::Result<()> {
     for OwnedGarment { name, points, material, .. } in garments {
@@ -139,6 +175,13 @@ fn check_finite(garments: &[OwnedGarment]) -> io::Result<()> {
 fn check_points(kind: &str, name: &str, points: &[[f64; 3]]) -> io::Result<()> {
     match points.iter().position(|x| !x.iter().all(|c| c.is_finite())) {
         Some(k) => Err(not_finite(&format!("{kind} {name:?}: the position of point {k}"))),
+        None => Ok(()),
+    }
+}
+
+fn check_particles(particles: &[Particle]) -> io::Result<()> {
+    match particles.iter().find(|p| !p.position.iter().all(|c| c.is_finite())) {
+        Some(p) => Err(not_finite(&format!("the position of particle {}", p.id))),
         None => Ok(()),
     }
 }

@@ -6,8 +6,8 @@ use io_mcap::{Recording, Status};
 use serde::ser::{SerializeMap, Serializer};
 use serde::{Deserialize, Serialize};
 
-use crate::record::{OBSTACLES, RunError};
-use crate::report::FrameReport;
+use crate::record::{FLUID, OBSTACLES, RunError};
+use crate::report::{FluidSummary, FrameReport};
 
 /// Whether a recording is whole.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -90,6 +90,33 @@ const FIGURES: [Figure; 24] = [
     ("seconds.remesh", |r| r.seconds.remesh),
 ];
 
+/// A named number of the fluid in every frame.
+type FluidFigure = (&'static str, fn(&FluidSummary) -> f64);
+
+/// More of them, for recordings with a fluid.
+const FLUID_FIGURES: [FluidFigure; 20] = [
+    ("fluid.particles", |f| f.particles as f64),
+    ("fluid.active", |f| f.active as f64),
+    ("fluid.transition", |f| f.transition as f64),
+    ("fluid.restrained", |f| f.restrained as f64),
+    ("fluid.steps", |f| f.steps as f64),
+    ("fluid.step_s", |f| f.step_s),
+    ("fluid.moved", |f| f.moved as f64),
+    ("fluid.sweeps", |f| f.sweeps as f64),
+    ("fluid.density_pairs", |f| f.density_pairs as f64),
+    ("fluid.force_pairs", |f| f.force_pairs as f64),
+    ("fluid.listings", |f| f.listings as f64),
+    ("fluid.emitted", |f| f.emitted as f64),
+    ("fluid.drained", |f| f.drained as f64),
+    ("fluid.density_max_kg_per_m3", |f| f.density_max_kg_per_m3),
+    ("fluid.kinetic_energy_j", |f| f.kinetic_energy_j),
+    ("fluid.seconds.motion", |f| f.seconds.motion),
+    ("fluid.seconds.neighbours", |f| f.seconds.neighbours),
+    ("fluid.seconds.density", |f| f.seconds.density),
+    ("fluid.seconds.force", |f| f.seconds.force),
+    ("fluid.seconds.changes", |f| f.seconds.changes),
+];
+
 /// What a recording tells about its run. As JSON an object with these keys; `totals` is an object
 /// from the name of a figure, such as `faces` or `seconds.total`, to its [`Spread`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -108,6 +135,8 @@ pub struct Info {
     pub checkpoints: Vec<u64>,
     /// Names of the obstacles in the order of the scene.
     pub obstacles: Vec<String>,
+    /// Name of the fluid, if there is one.
+    pub fluid: Option<String>,
     /// Names of the attached files, the scene first.
     pub attachments: Vec<String>,
     /// The report of every complete frame; frame 0 is the initial state.
@@ -154,6 +183,7 @@ impl Info {
             obstacles: obstacles
                 .and_then(|names| serde_json::from_str(names).ok())
                 .unwrap_or_default(),
+            fluid: metadata.get(FLUID).cloned(),
             attachments: recording.attachments().into_iter().map(|a| a.name).collect(),
             totals: totals(&frames),
             skipped,
@@ -171,7 +201,11 @@ impl Info {
 pub fn totals(frames: &[FrameReport]) -> Vec<(&'static str, Spread)> {
     let made = || frames.iter().filter(|frame| frame.frame > 0);
     let spread = |(name, figure): Figure| Some((name, Spread::of(made().map(figure))?));
-    FIGURES.into_iter().filter_map(spread).collect()
+    let of_fluid = |(name, figure): FluidFigure| {
+        Some((name, Spread::of(made().filter_map(|frame| frame.fluid.as_ref()).map(figure))?))
+    };
+    let all = FIGURES.into_iter().filter_map(spread);
+    all.chain(FLUID_FIGURES.into_iter().filter_map(of_fluid)).collect()
 }
 
 fn as_object<S: Serializer>(

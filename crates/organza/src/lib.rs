@@ -79,6 +79,7 @@ pub mod checkpoint;
 pub mod contact;
 pub mod export;
 pub mod fabric;
+pub mod fluid;
 pub mod handles;
 pub mod info;
 pub mod obstacle;

@@ -1,10 +1,12 @@
 //! Pictures of the frames of a recording: a sequence, or the poster beside a recording.
 
+mod beads;
 mod error;
 mod paint;
 mod sight;
 mod view;
 
+pub use beads::Beads;
 pub use error::PictureError;
 pub use paint::{Colouring, SIZE_RANGE_M, STRETCH_RANGE};
 pub use sight::Sight;
@@ -47,7 +49,7 @@ impl PictureOptions {
     }
 }
 
-/// Draws the garments of a frame, and its obstacles in grey. What depends on cameras needs `sight`, and
+/// Draws the garments of a frame, its obstacles in grey, and its particles as `beads`. What depends on cameras needs `sight`, and
 /// is left out without.
 ///
 /// # Errors
@@ -57,9 +59,11 @@ pub fn draw_frame(
     viewpoint: &Viewpoint,
     size: Size,
     options: &PictureOptions,
+    beads: &Beads,
     style: &Style,
     sight: Option<&Sight>,
 ) -> Result<Image, RenderError> {
+    let fluid = frame.fluid.as_ref().map(|particles| beads.draw(particles, options.colouring));
     let paint = |garment| options.colouring.of(garment, frame.index, sight);
     let paints: Vec<_> = frame.garments.iter().map(paint).collect();
     let edges = sight.filter(|_| options.frustum).map(|sight| sight.frustum(frame));
@@ -73,7 +77,8 @@ pub fn draw_frame(
         paint: Paint::OBSTACLE,
         ..Surface::new(&obstacle.points, &obstacle.triangles)
     });
-    let mut layers: Vec<Layer<'_>> = garments.chain(obstacles).map(Layer::Surface).collect();
+    let surfaces = garments.chain(obstacles).chain(fluid.iter().map(|f| f.surface()));
+    let mut layers: Vec<Layer<'_>> = surfaces.map(Layer::Surface).collect();
     layers.extend(edges.iter().map(|edges| Layer::Lines(Lines::new(edges))));
     draw_with(&layers, viewpoint, size, style)
 }
@@ -98,14 +103,14 @@ pub fn render(
     let frames = selected(&recording, path, range)?;
     let up = up(&recording);
     let sight = options.looks().then(|| Sight::of(&mut recording, path)).transpose()?;
-    let bounds = bounds(&mut recording, path, sight.as_ref().filter(|_| options.frustum))?;
+    let (bounds, beads) = whole(&mut recording, path, sight.as_ref().filter(|_| options.frustum))?;
     let style = Style { floor: bounds.lowest(up), ..Style::default() };
     let mut files = None;
     for (k, &index) in frames.iter().enumerate() {
         let frame = recording.frame(index).map_err(RunError::recording(path))?;
         let (viewpoint, size) = viewpoint(&frame, bounds.corners(), up, options)
             .ok_or_else(|| PictureError::NoCamera { path: path.to_owned(), frame: index })?;
-        let png = draw_frame(&frame, &viewpoint, size, options, &style, sight.as_ref())?;
+        let png = draw_frame(&frame, &viewpoint, size, options, &beads, &style, sight.as_ref())?;
         let png = png.encode_png()?;
         // Only now: what cannot be drawn leaves no folder behind.
         let files = match &files {
@@ -141,28 +146,34 @@ pub fn write_poster(path: &Path, poster: &Path) -> Result<(), PictureError> {
     let style = Style { floor: Bounds::of(points()).lowest(up), ..Style::default() };
     let (viewpoint, size) = viewpoint(&frame, points(), up, &options)
         .ok_or_else(|| PictureError::NoCamera { path: path.to_owned(), frame: last })?;
-    Ok(draw_frame(&frame, &viewpoint, size, &options, &style, None)?.write_png(poster)?)
+    let mut beads = Beads::of(&recording)?;
+    beads.note(frame.fluid.as_deref().unwrap_or_default());
+    let image = draw_frame(&frame, &viewpoint, size, &options, &beads, &style, None)?;
+    Ok(image.write_png(poster)?)
 }
 
-/// The box around everything in a recording, with the frustums where `sight` shows them.
-fn bounds(
+/// The box around everything in a recording, with the frustums where `sight` shows them, and what its
+/// particles look like.
+fn whole(
     recording: &mut Recording<File>,
     path: &Path,
     sight: Option<&Sight>,
-) -> Result<Bounds, RunError> {
-    let mut bounds = Bounds::EMPTY;
+) -> Result<(Bounds, Beads), RunError> {
+    let (mut bounds, mut beads) = (Bounds::EMPTY, Beads::of(recording)?);
     let indices: Vec<u64> = recording.frames().map(|frame| frame.index).collect();
     for index in indices {
         let frame = recording.frame(index).map_err(RunError::recording(path))?;
         bounds.extend(points(&frame));
         bounds.extend(sight.iter().flat_map(|sight| sight.frustum(&frame)).flatten());
+        beads.note(frame.fluid.as_deref().unwrap_or_default());
     }
-    Ok(bounds)
+    Ok((bounds, beads))
 }
 
 /// All points that a picture of a frame shows.
 fn points(frame: &OwnedFrame) -> impl Iterator<Item = [f64; 3]> + Clone + '_ {
     let garments = frame.garments.iter().map(|garment| &garment.points);
     let obstacles = frame.obstacles.iter().map(|obstacle| &obstacle.points);
-    garments.chain(obstacles).flatten().copied()
+    let fluid = frame.fluid.iter().flatten().map(|particle| particle.position);
+    garments.chain(obstacles).flatten().copied().chain(fluid)
 }

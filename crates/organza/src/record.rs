@@ -35,7 +35,7 @@ pub use garments::{PALETTE, garments};
 pub use obstacles::obstacles;
 pub use range::{FrameRange, RangeError};
 pub use resume::{Resumed, resume, resume_with};
-pub(crate) use settings::{OBSTACLES, up};
+pub(crate) use settings::{FLUID, FLUID_SPACING, OBSTACLES, up};
 pub use settings::{Settings, scene_of};
 
 use std::path::{Path, PathBuf};
@@ -230,11 +230,21 @@ impl Run {
         let borrowed: Vec<Garment<'_>> = garments.iter().map(|g| g.borrowed()).collect();
         let obstacles = obstacles(&self.world);
         let obstacles: Vec<Obstacle<'_>> = obstacles.iter().map(|o| o.borrowed()).collect();
+        let fluid = match &self.world.fluid {
+            Some(water) => Some(water.particles().ok_or_else(|| RunError::Recording {
+                path: self.path.clone(),
+                source: io_mcap::Error::Unrecordable {
+                    what: format!("fluid `{}`: more than 2³² particles", water.name),
+                },
+            })?),
+            None => None,
+        };
         let frame = Frame {
             index: self.world.frame,
             time_s: self.world.time(),
             garments: &borrowed,
             obstacles: &obstacles,
+            fluid: fluid.as_deref(),
             camera: self.camera.as_ref().map(|path| camera(&path.at(self.world.time()))),
             transforms: &[],
             report: &report,

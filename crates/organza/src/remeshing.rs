@@ -122,11 +122,10 @@ impl Remeshing {
     ) -> Result<Remeshed, RemeshError> {
         let mut clock = Instant::now();
         let mut lap = || std::mem::replace(&mut clock, Instant::now()).elapsed().as_secs_f64();
-        let obstacle =
-            self.obstacle_angles.as_ref().zip(bodies).map(|(angles, (bodies, room))| {
-                let angle = |panel: u32| angles[panel as usize];
-                obstacle_sizing::metrics(cloth, bodies, time, OBSTACLE_REACH * room, angle)
-            });
+        let obstacle = self.obstacle_angles.as_ref().zip(bodies).map(|(angles, (bodies, room))| {
+            let angle = |panel: u32| angles[panel as usize];
+            obstacle_sizing::metrics(cloth, bodies, time, OBSTACLE_REACH * room, angle)
+        });
         let obstacle_s = if obstacle.is_some() { lap() } else { 0.0 };
         let settings = RemeshSettings {
             aspect_min: self.aspect_min,

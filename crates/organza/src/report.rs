@@ -29,6 +29,8 @@ pub struct Seconds {
     pub sizing: f64,
     /// Mesh edits (s).
     pub remesh: f64,
+    /// The fluid (s).
+    pub fluid: f64,
 }
 
 impl Seconds {
@@ -38,6 +40,64 @@ impl Seconds {
         self.energy = solve.energy_s;
         self.contact = solve.contact_s;
     }
+}
+
+/// Seconds of wall time that a fluid takes, by stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FluidSeconds {
+    /// New velocities and positions, nozzles and sinks (s).
+    pub motion: f64,
+    /// Listing neighbours (s).
+    pub neighbours: f64,
+    /// Densities of all particles (s).
+    pub density: f64,
+    /// Accelerations of all particles (s).
+    pub force: f64,
+    /// Densities and accelerations by what has changed (s).
+    pub changes: f64,
+}
+
+/// The fluid in one frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FluidSummary {
+    /// Particles at the end of the frame.
+    pub particles: usize,
+    /// Of those, how many move freely.
+    pub active: usize,
+    /// How many are on the way from rest to full dynamics.
+    pub transition: usize,
+    /// How many rest.
+    pub restrained: usize,
+    /// Time steps.
+    pub steps: u64,
+    /// Mean length of a step (s).
+    pub step_s: f64,
+    /// Particles that changed their place, summed over the steps.
+    pub moved: u64,
+    /// Steps in which everything was computed anew.
+    pub sweeps: u64,
+    /// Pairs of particles that were looked at for densities, summed over the steps.
+    pub density_pairs: u64,
+    /// The same for accelerations.
+    pub force_pairs: u64,
+    /// How often neighbours were listed anew.
+    pub listings: u64,
+    /// New particles.
+    pub emitted: u64,
+    /// Removed particles.
+    pub drained: u64,
+    /// Largest density of a particle (kg/m³).
+    pub density_max_kg_per_m3: f64,
+    /// Kinetic energy of the momenta (J).
+    pub kinetic_energy_j: f64,
+    /// Energy of compression, also of the walls (J).
+    pub internal_energy_j: f64,
+    /// Energy of gravity, from the origin up (J).
+    pub potential_energy_j: f64,
+    /// Wall time by stage.
+    pub seconds: FluidSeconds,
 }
 
 /// Extreme principal stretches over all triangles, at the end of the steps and before remeshing.
@@ -147,7 +207,10 @@ pub struct FrameReport {
     /// What the camera saw, if mesh sizes depend on it.
     #[serde(default)]
     pub view: Option<ViewSummary>,
-    /// Kinetic energy (J).
+    /// The fluid, if the scene has one.
+    #[serde(default)]
+    pub fluid: Option<FluidSummary>,
+    /// Kinetic energy of the cloth (J).
     pub kinetic_energy_j: f64,
     /// Potential energy of fabrics, gravity and springs at the end of the steps, before remeshing (J);
     /// absent in old recordings.
@@ -165,7 +228,11 @@ impl FrameReport {
         let solve = SolveReport::default();
         let stretch = StretchRange::of(&world.cloth);
         let crossings = world.contact.map(|_| world.crossings(world.frame).map_or(0, |c| c.n));
-        FrameReport::new(world, 0, 0, &solve, None, crossings, stretch, Seconds::default())
+        let seconds = Seconds::default();
+        let report = FrameReport::new(world, 0, 0, &solve, None, crossings, stretch, seconds);
+        let nothing = sph::StepReport::default();
+        let fluid = world.fluid.as_ref().map(|water| water.summary(&nothing, 0.0));
+        FrameReport { fluid, ..report }
     }
 
     pub(crate) fn new(
@@ -198,7 +265,7 @@ impl FrameReport {
             yielded: 0,
             warnings: Vec::new(),
             residual_m_per_s: solve.residual,
-            stretch: Some(stretch),
+            stretch: (world.cloth.mesh.n_triangles() > 0).then_some(stretch),
             remesh: remeshed.map(|r| &r.report).map(|r| RemeshSummary {
                 splits: r.n_splits,
                 flips: r.n_flips,
@@ -207,7 +274,9 @@ impl FrameReport {
                 limit_reached: r.limit_reached(),
             }),
             view: remeshed.and_then(|r| r.view),
-            kinetic_energy_j: world.cloth.kinetic_energy(),
+            fluid: None,
+            // A sum of nothing is -0.
+            kinetic_energy_j: world.cloth.kinetic_energy() + 0.0,
             potential_energy_j: Some(world.potential_energy_j),
             skipped: world.skipped(),
             seconds,

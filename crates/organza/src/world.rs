@@ -1,12 +1,14 @@
 //! The world: state and policies of a running scene, and the step.
 
 mod bodies;
+mod flow;
 mod tangled;
 #[cfg(test)]
 mod tests;
 
 use crate::build::{BuildError, Built, Garment, build};
 use crate::contact::{ContactSettings, Crossings, SurfaceContact};
+use crate::fluid::Water;
 use crate::handles::{Handles, by_name};
 use crate::obstacle::Obstacle;
 use crate::remeshing::Remeshing;
@@ -49,6 +51,14 @@ pub enum StepError {
         /// What was too large.
         message: String,
     },
+    /// The fluid could not go on.
+    #[error("frame {frame}: the fluid: {source}")]
+    Fluid {
+        /// The frame that was being made.
+        frame: u64,
+        /// Why.
+        source: sph::FluidError,
+    },
     /// A remeshing setting is out of range.
     #[error("frame {frame}: {source}")]
     Remesh {
@@ -78,6 +88,8 @@ pub struct World {
     pub obstacles: Vec<Obstacle>,
     /// How things touch; absent where nothing does.
     pub contact: Option<ContactSettings>,
+    /// The fluid, if the scene has one.
+    pub fluid: Option<Water>,
     /// The obstacles that are there, as the contact sees them.
     bodies: Bodies,
     /// What passes through what.
@@ -137,8 +149,9 @@ impl World {
     /// See [`BuildError`].
     pub fn new(loaded: &Loaded) -> Result<World, BuildError> {
         let built = build(loaded)?;
-        let Built { cloth, fabrics, garments, handles, obstacles, contact, warnings } = built;
-        let contact = wanted_contact(contact, &obstacles);
+        let Built { cloth, fabrics, garments, handles, obstacles, fluid, contact, warnings } =
+            built;
+        let contact = wanted_contact(contact.filter(|_| !garments.is_empty()), &obstacles);
         let mut bodies = Bodies::default();
         if contact.is_some() {
             let updated = bodies.update(&obstacles, 0.0);
@@ -170,6 +183,7 @@ impl World {
             garments,
             obstacles,
             contact,
+            fluid,
             bodies,
             tangled: Tangled::default(),
             warnings,
@@ -226,8 +240,12 @@ impl World {
     pub fn advance(&mut self) -> Result<FrameReport, StepError> {
         // Nothing that can fail changes the mesh.
         let start = (self.cloth.x.clone(), self.cloth.v.clone(), self.handles.clone());
+        let fluid = self.fluid.as_ref().map(|water| water.fluid.checkpoint());
         self.make_frame().inspect_err(|_| {
             (self.cloth.x, self.cloth.v, self.handles) = start;
+            if let (Some(water), Some(start)) = (&mut self.fluid, &fluid) {
+                water.fluid.restore(start).expect("a state of this fluid");
+            }
             self.forget();
             self.note_tangles();
         })
@@ -239,10 +257,12 @@ impl World {
         let (mut solve, mut seconds, mut retries) = (SolveReport::default(), Seconds::default(), 0);
         let clock = Instant::now();
         let h = self.frame_s / f64::from(self.substeps);
-        for k in 0..self.substeps {
+        let n_steps = if self.has_cloth() { self.substeps } else { 0 };
+        for k in 0..n_steps {
             let time = self.time() + f64::from(k) * h;
             self.step(Step { time, h }, frame, 0, &mut solve, &mut retries, &mut seconds)?;
         }
+        let fluid = self.move_fluid(frame, &mut seconds)?;
         let stretch = StretchRange::of(&self.cloth);
         self.measure_energy();
         let mut remeshed = None;
@@ -297,14 +317,20 @@ impl World {
         self.note_crossings(crossings.as_ref());
         seconds.solve(&solve);
         seconds.total = clock.elapsed().as_secs_f64();
-        let (substeps, remeshed) = (self.substeps, remeshed.as_ref());
+        let (substeps, remeshed) = (n_steps, remeshed.as_ref());
         let crossings = self.contact.map(|_| crossings.map_or(0, |crossings| crossings.n));
         let mut report = FrameReport::new(
             self, substeps, retries, &solve, remeshed, crossings, stretch, seconds,
         );
         report.yielded = yielded;
+        report.fluid = fluid;
         report.warnings = std::mem::take(&mut self.tangled.warnings);
         Ok(report)
+    }
+
+    /// True if there is any cloth.
+    pub fn has_cloth(&self) -> bool {
+        !self.garments.is_empty()
     }
 
     /// One step; a failing one is redone in halves.
@@ -395,7 +421,7 @@ impl World {
 
     /// Builds forces, contact, matrix and names if the mesh has changed.
     fn prepare(&mut self) -> Result<(), PrepareError> {
-        if self.prepared.is_none() {
+        if self.prepared.is_none() && self.has_cloth() {
             let h = self.frame_s / f64::from(self.substeps);
             let mut system = System::new(&self.cloth, &self.fabrics, &self.environment, h)?;
             if let Some(settings) = self.contact {
@@ -432,6 +458,12 @@ impl World {
     /// Stages that this scene does not need, and why.
     pub fn skipped(&self) -> Vec<String> {
         let mut skipped = Vec::new();
+        if !self.has_cloth() {
+            skipped.push("cloth: none in the scene".to_string());
+            let is_free = self.fluid.as_ref().is_some_and(|water| !water.is_restrained);
+            skipped.extend(is_free.then(|| "restraint: none in the scene".to_string()));
+            return skipped;
+        }
         let mut note = |absent: bool, text: &str| {
             if absent {
                 skipped.push(text.to_string());
@@ -448,6 +480,7 @@ impl World {
         note(!limits, "strain limits: none in the scene");
         note(self.fabrics.iter().all(|f| f.bending.is_none()), "bending: no fabric resists it");
         note(self.handles.list().is_empty(), "handles: none in the scene");
+        note(self.fluid.is_none(), "fluid: none in the scene");
         note(self.contact.is_none(), "contact: none in the scene");
         let is_free = self.contact.is_some() && !self.tangled.was_at_work;
         note(is_free, "untangling: nothing passes through anything");

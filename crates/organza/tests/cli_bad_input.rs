@@ -60,7 +60,11 @@ fn scenes() {
         ("not-json", "frames = 3".into(), &["s.json5:1:"]),
         ("cut", SCENE[..40].into(), &["s.json5:2:"]),
         ("list", "[1, 2]".into(), &["s.json5:1:1: expected an object, got a list"]),
-        ("no-cloth", "{frames: 3}".into(), &["s.json5:1:1: ", "`cloths`"]),
+        (
+            "no-cloth",
+            "{frames: 3}".into(),
+            &["s.json5:1:1: ", "cloths: a scene needs at least one cloth or fluid"],
+        ),
         ("zero-frames", format!("{{frames: 0, {CLOTH}}}"), &["s.json5:1:10: frames: "]),
         ("negative-frames", format!("{{frames: -3, {CLOTH}}}"), &["s.json5:1:10: frames: "]),
         ("text-frames", format!("{{frames: 'many', {CLOTH}}}"), &["s.json5:1:10: frames: "]),
@@ -122,8 +126,8 @@ fn scenes() {
         ),
         (
             "unsupported",
-            format!("{{frames: 1, fluid: {{}}, {CLOTH}}}"),
-            &["s.json5:1:13: fluid: not supported yet", "--allow-unsupported"],
+            format!("{{frames: 1, morphs: {{}}, {CLOTH}}}"),
+            &["s.json5:1:13: morphs: not supported yet", "--allow-unsupported"],
         ),
         (
             "handle-without-cloth",
@@ -359,6 +363,7 @@ fn what_a_recording_carries() {
             time_s: 0.0,
             garments: &garments,
             obstacles: &[],
+            fluid: None,
             camera: None,
             transforms: &[],
             report: &serde_json::json!({"frame": "none"}),

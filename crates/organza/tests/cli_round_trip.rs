@@ -296,16 +296,16 @@ fn check_builds_without_running() {
 fn what_is_not_supported_is_left_out_only_when_allowed() {
     let folder = Folder::new("unsupported");
     folder.write("scrap.obj", SCRAP);
-    folder.write("t.json5", TRIANGLE.replacen('{', "{ fluids: [{ depth_m: 1 }],", 1));
+    folder.write("t.json5", TRIANGLE.replacen('{', "{ morphs: [{ depth_m: 1 }],", 1));
     for command in ["simulate", "check"] {
         let ran = folder.run(&[command, "t.json5"]);
         assert_eq!(ran.code, 2, "{ran:?}");
-        assert!(ran.err.contains("t.json5:1:3: fluids: not supported yet"), "{ran:?}");
+        assert!(ran.err.contains("t.json5:1:3: morphs: not supported yet"), "{ran:?}");
         assert_eq!(folder.listing(), ["scrap.obj", "t.json5"]);
     }
     for command in ["check", "simulate"] {
         let ran = folder.good(&[command, "t.json5", "--allow-unsupported"]);
-        assert!(ran.err.contains("warning: t.json5:1:3: fluids"), "{ran:?}");
+        assert!(ran.err.contains("warning: t.json5:1:3: morphs"), "{ran:?}");
     }
 }
 

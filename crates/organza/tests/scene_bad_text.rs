@@ -152,13 +152,17 @@ fn unknown_and_missing_keys() {
         ],
     );
     complains("{cloths: []}", &[], &["s.json5:1:1: key `frames` is missing"]);
-    complains("{frames: 1}", &[], &["s.json5:1:1: key `cloths` is missing"]);
+    complains(
+        "{frames: 1}",
+        &[],
+        &["s.json5:1:1: cloths: a scene needs at least one cloth or fluid"],
+    );
     // A key may hold what would break a message.
     scene_complains(
         "'a`, expected `b': 1,",
         "s.json5:1:13: a`, expected `b: unknown key `a`, expected `b`, \
         expected one of $schema, name, frames, frames_per_second, substeps, gravity, wind, integrator, \
-        newton, linear_solver, linear_tolerance, cloths, handles, obstacles, contact, camera, \
+        newton, linear_solver, linear_tolerance, cloths, handles, obstacles, fluids, contact, camera, \
         shots, view, recording",
     );
 }
@@ -229,10 +233,8 @@ fn complaints_about_set_values_name_the_argument() {
 
 #[test]
 fn what_is_not_supported_is_an_error_or_a_warning() {
-    let text = with(
-        "cameras: [{}], restraint: true, fluid: null, fluids: false,",
-        "plasticity: {yield: 1}",
-    );
+    let text =
+        with("cameras: [{}], restraint: true, morphs: null, fluids: [],", "plasticity: {yield: 1}");
     let errors = errors_of(text.as_bytes(), &[]);
     assert_eq!(
         errors.to_string(),

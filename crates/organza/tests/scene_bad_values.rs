@@ -17,7 +17,7 @@ fn time_and_solver() {
             "s.json5:3:27: newton.max_iterations: must be at least 1, got 0",
             "s.json5:3:41: newton.tolerance: must be positive and finite, got -1",
             "s.json5:3:64: linear_tolerance: 1e0 is beyond the limit of 1e-1",
-            "s.json5:3:75: cloths: a scene needs at least one cloth",
+            "s.json5:3:75: cloths: a scene needs at least one cloth or fluid",
         ],
     );
     complains(

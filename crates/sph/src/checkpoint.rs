@@ -34,9 +34,8 @@ pub struct Checkpoint {
     pub greatest: [f64; 3],
     /// Layers that each nozzle has let out.
     pub layers: Vec<u64>,
-    /// True if the next step may begin from what this one has computed; steps until the next try to do
-    /// so, and how long the last pause was.
-    pub incremental: (bool, u32, u32),
+    /// True if the next step may begin from what this one has computed.
+    pub incremental: bool,
 }
 
 impl<R: Restraint> Fluid<R> {
@@ -57,7 +56,7 @@ impl<R: Restraint> Fluid<R> {
             walls: walls.collect(),
             greatest: [self.fastest, self.hardest, self.farthest],
             layers: self.emitters.iter().map(|emitter| emitter.n_layers).collect(),
-            incremental: (changes.is_known(state.len()), changes.wait, changes.pause),
+            incremental: changes.is_known(state.len()),
         }
     }
 
@@ -126,12 +125,10 @@ impl<R: Restraint> Fluid<R> {
             emitter.n_layers = n_layers;
         }
         let changes = &mut self.scratch.changes;
-        let (known, wait, pause) = from.incremental;
-        if known {
+        if from.incremental {
             changes.evaluated_all(&self.state, &self.touched);
         } else {
             changes.forget();
         }
-        (changes.wait, changes.pause) = (wait, pause);
     }
 }

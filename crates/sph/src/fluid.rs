@@ -5,7 +5,7 @@ use crate::incremental::{Changes, Update};
 use crate::motion::{Moved, Outside, larger};
 use crate::neighbours::Neighbours;
 use crate::pair::Laws;
-use crate::report::StepReport;
+use crate::report::{Seconds, StepReport};
 use crate::restraint::RestraintSettings;
 use crate::settings::{FluidError, FluidSettings};
 use crate::source::{Emitter, Sink};
@@ -14,6 +14,7 @@ use crate::sweep;
 use crate::walls::{WallState, Walls};
 use arps::Restraint;
 use nalgebra::Vector3;
+use std::time::Instant;
 
 /// Particles of one fluid between walls. `R` is the policy that restrains them; `()` restrains nothing.
 #[derive(Clone, Debug)]
@@ -97,7 +98,7 @@ impl Fluid {
             scratch: Scratch::default(),
         };
         fluid.list_neighbours();
-        fluid.evaluate_all();
+        fluid.evaluate_all(&mut Seconds::default());
         fluid.hardest = hardest(&fluid.state.a);
         Ok(fluid)
     }
@@ -118,8 +119,8 @@ impl<R: Restraint> Fluid<R> {
         Ok(self.with_restraint(Some((policy, settings))))
     }
 
-    /// The same fluid without any policy.
-    pub fn released(self) -> Fluid {
+    /// The same fluid without any policy, although it is of a type that could have one.
+    pub fn released<Q: Restraint>(self) -> Fluid<Q> {
         self.with_restraint(None)
     }
 
@@ -178,21 +179,29 @@ impl<R: Restraint> Fluid<R> {
         // where the next step looks at changes only.
         let reach = self.farthest + (self.fastest + self.hardest * dt) * dt;
         if reach > half_skin && self.scratch.changes.is_known(n) {
+            let clock = Instant::now();
             self.list_in_between();
+            report.seconds.neighbours += clock.elapsed().as_secs_f64();
             report.listings += 1;
         }
+        let clock = Instant::now();
         self.kick_and_drift(dt)?;
         self.time += dt;
         report.moved =
             if self.restraint.is_some() { self.scratch.moved.movers.len() } else { n } as u64;
-        if self.emit_and_drain(&mut report) || self.farthest > half_skin {
+        let lists_are_old = self.emit_and_drain(&mut report) || self.farthest > half_skin;
+        report.seconds.motion = clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        if lists_are_old {
             self.list_neighbours();
-            self.evaluate_all();
+            report.seconds.neighbours += clock.elapsed().as_secs_f64();
             report.listings += 1;
+        }
+        if lists_are_old || !self.evaluate_changes(&mut report) {
+            self.evaluate_all(&mut report.seconds);
             report.sweeps = 1;
-        } else if !self.evaluate_changes(&mut report) {
-            self.evaluate_all();
-            report.sweeps = 1;
+        } else {
+            report.seconds.changes = clock.elapsed().as_secs_f64();
         }
         if report.sweeps == 1 {
             let n_pairs = self.neighbours.n_pairs() as u64;
@@ -297,28 +306,29 @@ impl<R: Restraint> Fluid<R> {
         self.laws.kernel.support() + self.settings.skin * self.settings.spacing
     }
 
-    /// Densities, pressures and accelerations by what the step has changed. Returns false if that is
-    /// so much that everything has to be computed anew.
+    /// Densities, pressures and accelerations by what the step has changed. Returns false if so much
+    /// moves that everything has to be computed anew.
     fn evaluate_changes(&mut self, report: &mut StepReport) -> bool {
         let Some((_, settings)) = &self.restraint else { return false };
         let n = self.state.len();
         let (moved, changes) = (&self.scratch.moved, &mut self.scratch.changes);
         // Nothing held is nothing gained: the bits are then those of a fluid without a policy.
         let most_movers = settings.sweep_above * n as f64;
-        if !moved.any_held || moved.movers.len() as f64 >= most_movers || !changes.may_try(n) {
+        if !moved.any_held || moved.movers.len() as f64 >= most_movers || !changes.is_known(n) {
             return false;
         }
         let update = Update {
             laws: &self.laws,
             walls: &mut self.touched,
-            neighbours: &self.neighbours,
+            neighbours: &mut self.neighbours,
             state: &mut self.state,
             movers: &moved.movers,
             stopped: &moved.stopped,
             tolerance: settings.pressure_tolerance,
+            gravity: self.settings.gravity.into(),
             changes,
         };
-        let Some(looked) = update.run() else { return false };
+        let looked = update.run();
         report.changed += looked.changed;
         report.density_pairs += looked.density_pairs;
         report.force_pairs += looked.force_pairs;
@@ -327,9 +337,10 @@ impl<R: Restraint> Fluid<R> {
 
     /// Densities, pressures and accelerations of all particles, from nothing but their positions and
     /// effective velocities.
-    fn evaluate_all(&mut self) {
+    fn evaluate_all(&mut self, seconds: &mut Seconds) {
+        let clock = Instant::now();
         let State { x, w, a, density, .. } = &mut self.state;
-        sweep::densities(&self.laws, x, &mut self.touched, &mut self.neighbours, density);
+        sweep::densities(&self.laws, x, &mut self.touched, &mut self.neighbours, density, None);
         for ((x, w), &density) in x.iter_mut().zip(w.iter_mut()).zip(density.iter()) {
             x[3] = self.laws.pressure_term(density);
             w[3] = density;
@@ -337,13 +348,10 @@ impl<R: Restraint> Fluid<R> {
         for (x, &density) in self.touched.x.iter_mut().zip(&self.touched.density) {
             x[3] = self.laws.pressure_term(density);
         }
-        sweep::accelerations(&self.laws, x, w, &self.touched, &mut self.neighbours, a);
-        let gravity = self.settings.gravity;
-        for a in a {
-            for k in 0..3 {
-                a[k] += gravity[k];
-            }
-        }
+        seconds.density += clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
+        let all = (self.settings.gravity.into(), None);
+        sweep::accelerations(&self.laws, x, w, &self.touched, &mut self.neighbours, all, a);
         if let Some((_, settings)) = &self.restraint {
             // While most particles move the next step will not look at changes either.
             let n_movers = self.scratch.moved.movers.len() as f64;
@@ -353,6 +361,7 @@ impl<R: Restraint> Fluid<R> {
                 self.scratch.changes.forget();
             }
         }
+        seconds.force += clock.elapsed().as_secs_f64();
     }
 }
 

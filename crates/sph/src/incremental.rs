@@ -5,12 +5,16 @@
 //! density that has changed by little leaves the pressure as the accelerations have it. Then the
 //! accelerations, by the pairs in which one of the two has a new position, velocity or pressure. What a
 //! pair gave before is computed again from the old particles and taken away.
+//!
+//! Where the particles that change are close together, most of their pairs are among themselves: then
+//! their sums are computed anew instead, as in a sweep that leaves out all others.
 
 use crate::grid::Point;
 use crate::lanes::{self, Four, LANES};
 use crate::neighbours::Neighbours;
 use crate::pair::{Laws, Side, transpose};
 use crate::state::State;
+use crate::sweep::{self, Marked, Stale};
 use crate::walls::WallState;
 use pulp::{Simd, WithSimd};
 
@@ -22,11 +26,16 @@ const TURNED: u8 = 2;
 const TOUCHED: u8 = 4;
 /// Has another position, velocity or pressure.
 const CHANGED: u8 = 8;
+/// Has another acceleration.
+const STALE: u8 = 16;
 
-/// The part of the particles above which changes cost more than everything anew (1).
+/// The part of the particles from which on it is not worth looking for those that no change has
+/// reached (1).
 const MOST_CHANGED: f64 = 0.4;
-/// Longest pause between two tries, in steps.
-const LONGEST_PAUSE: u32 = 32;
+/// Time to bring a particle's pairs up to date, over that to compute its sums anew (1): densities, of
+/// which both ends of a pair get the difference, and accelerations. Measured.
+const DENSITY_COST: f64 = 2.0;
+const FORCE_COST: f64 = 2.5;
 
 /// What is remembered from step to step.
 #[derive(Clone, Debug, Default)]
@@ -46,9 +55,8 @@ pub(crate) struct Changes {
     changed: Vec<u32>,
     /// Neighbours that are looked at for a particle.
     near: Vec<u32>,
-    /// Steps until the next try, and how many there were after the last one that was in vain.
-    pub(crate) wait: u32,
-    pub(crate) pause: u32,
+    /// Particles whose accelerations are stale.
+    stale: Vec<u32>,
 }
 
 /// How much was looked at.
@@ -66,7 +74,7 @@ pub(crate) struct Looked {
 pub(crate) struct Update<'a> {
     pub(crate) laws: &'a Laws,
     pub(crate) walls: &'a mut WallState,
-    pub(crate) neighbours: &'a Neighbours,
+    pub(crate) neighbours: &'a mut Neighbours,
     /// The particles after kick and drift, with P and ρ as before.
     pub(crate) state: &'a mut State,
     /// Who has moved.
@@ -75,32 +83,115 @@ pub(crate) struct Update<'a> {
     pub(crate) stopped: &'a [u32],
     /// Changes of pressure that do not count (Pa).
     pub(crate) tolerance: f64,
+    /// Acceleration of gravity (m/s²).
+    pub(crate) gravity: [f64; 3],
     pub(crate) changes: &'a mut Changes,
 }
 
 impl Update<'_> {
-    /// Brings densities and accelerations up to date. Returns nothing, and leaves the accelerations as
-    /// they were, if too many particles have changed: then everything has to be computed anew.
-    pub(crate) fn run(self) -> Option<Looked> {
-        lanes::run(self)
+    /// Brings densities and accelerations up to date.
+    pub(crate) fn run(mut self) -> Looked {
+        self.changes.marks.resize(self.state.len(), 0);
+        self.changes.wall_marks.resize(self.walls.x.len(), 0);
+        self.mark_movers();
+        let (sums_are_cheaper, density_pairs) = match self.touched_by_movers() {
+            Some(pairs) => (true, self.densities_anew(pairs)),
+            None => (false, lanes::run(DensityChanges(&mut self))),
+        };
+        self.pressures();
+        let force_pairs = match self.touched_by_changes() {
+            Some(pairs) => self.accelerations_anew(pairs, sums_are_cheaper),
+            None => lanes::run(ForceChanges(&mut self)),
+        };
+        let changed = self.changes.changed.len() as u64;
+        self.changes.finish(self.state, self.walls);
+        Looked { density_pairs, force_pairs, changed }
+    }
+
+    /// Marks who has moved or stopped.
+    fn mark_movers(&mut self) {
+        let Changes { marks, touched, changed, .. } = &mut *self.changes;
+        for &i in self.movers {
+            marks[i as usize] = MOVED | TURNED | TOUCHED | CHANGED;
+        }
+        touched.extend_from_slice(self.movers);
+        for &i in self.stopped {
+            marks[i as usize] = TURNED | CHANGED;
+        }
+        changed.extend_from_slice(self.movers);
+        changed.extend_from_slice(self.stopped);
+    }
+
+    /// Marks all particles that may have another density, if these are so few that it is cheaper to
+    /// compute their densities anew than to look at the pairs of the movers: where movers are close
+    /// together. Returns the number of their pairs.
+    fn touched_by_movers(&mut self) -> Option<u64> {
+        let Changes { marks, touched, wall_marks, touched_walls, .. } = &mut *self.changes;
+        let most = (DENSITY_COST * self.movers.len() as f64) as usize;
+        let (n_before, n_walls_before) = (touched.len(), touched_walls.len());
+        for &mover in self.movers {
+            touch(self.neighbours.candidates(mover as usize), TOUCHED, marks, touched);
+            let walls = self.neighbours.wall_candidates(mover as usize);
+            touch(walls, TOUCHED, wall_marks, touched_walls);
+            if touched.len() > most {
+                touched.drain(n_before..).for_each(|i| marks[i as usize] &= !TOUCHED);
+                touched_walls.drain(n_walls_before..).for_each(|i| wall_marks[i as usize] = 0);
+                return None;
+            }
+        }
+        Some(pairs_of(touched, self.neighbours))
+    }
+
+    /// Computes the densities of what is touched anew.
+    fn densities_anew(&mut self, n_pairs: u64) -> u64 {
+        let Changes { marks, wall_marks, .. } = &*self.changes;
+        let only = [marks, wall_marks].map(|marks| Marked { marks, bits: TOUCHED });
+        let State { x, density, .. } = &mut *self.state;
+        sweep::densities(self.laws, x, self.walls, self.neighbours, density, Some(only));
+        n_pairs
+    }
+
+    /// The same for accelerations: marks all that may have another one, if computing theirs anew is
+    /// cheaper.
+    fn touched_by_changes(&mut self) -> Option<u64> {
+        let Changes { marks, changed, changed_walls, stale, .. } = &mut *self.changes;
+        if changed.len() as f64 > MOST_CHANGED * marks.len() as f64 {
+            stale.extend(0..marks.len() as u32);
+            marks.iter_mut().for_each(|mark| *mark |= STALE);
+            return Some(self.neighbours.n_pairs() as u64);
+        }
+        let most = (FORCE_COST * changed.len() as f64) as usize;
+        for &here in changed.iter() {
+            touch(&[here], STALE, marks, stale);
+            touch(self.neighbours.candidates(here as usize), STALE, marks, stale);
+            if stale.len() > most {
+                stale.drain(..).for_each(|i| marks[i as usize] &= !STALE);
+                return None;
+            }
+        }
+        for &wall in changed_walls.iter() {
+            touch(self.neighbours.fluid_candidates(wall as usize), STALE, marks, stale);
+        }
+        Some(pairs_of(stale, self.neighbours))
+    }
+
+    /// Computes stale accelerations anew.
+    fn accelerations_anew(&mut self, n_pairs: u64, densities_are_new: bool) -> u64 {
+        let only = Marked { marks: &self.changes.marks, bits: STALE };
+        let known = if densities_are_new { TOUCHED } else { 0 };
+        let stale = (self.gravity, Some(Stale { only, known }));
+        let State { x, w, a, .. } = &mut *self.state;
+        sweep::accelerations(self.laws, x, w, self.walls, self.neighbours, stale, a);
+        n_pairs
     }
 
     /// Densities by the pairs with a mover. Returns how many.
     #[inline(always)]
     fn densities<S: Simd>(&mut self, simd: S) -> u64 {
-        let Changes { x: old_x, marks, touched, changed, wall_marks, touched_walls, .. } =
+        let Changes { x: old_x, marks, touched, wall_marks, touched_walls, .. } =
             &mut *self.changes;
         let kernel = &self.laws.kernel;
         let (x, density) = (&self.state.x, &mut self.state.density);
-        for &i in self.movers {
-            marks[i as usize] = MOVED | TURNED | TOUCHED | CHANGED;
-            touched.push(i);
-            changed.push(i);
-        }
-        for &i in self.stopped {
-            marks[i as usize] = TURNED | CHANGED;
-            changed.push(i);
-        }
         let mut n_pairs = 0;
         for &mover in self.movers {
             let i = mover as usize;
@@ -284,23 +375,44 @@ impl Update<'_> {
     }
 }
 
-impl WithSimd for Update<'_> {
-    type Output = Option<Looked>;
+/// Marks particles and lists those that are new.
+#[inline(always)]
+fn touch(which: &[u32], bit: u8, marks: &mut [u8], list: &mut Vec<u32>) {
+    for &j in which {
+        let mark = &mut marks[j as usize];
+        if *mark & bit == 0 {
+            *mark |= bit;
+            list.push(j);
+        }
+    }
+}
+
+/// Pairs of fluid particles in the lists of some particles, each counted once.
+fn pairs_of(list: &[u32], neighbours: &Neighbours) -> u64 {
+    list.iter().map(|&i| neighbours.candidates(i as usize).len() as u64).sum::<u64>() / 2
+}
+
+/// The densities by pairs.
+struct DensityChanges<'u, 'a>(&'u mut Update<'a>);
+
+impl WithSimd for DensityChanges<'_, '_> {
+    type Output = u64;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, simd: S) -> Option<Looked> {
-        self.changes.marks.resize(self.state.len(), 0);
-        self.changes.wall_marks.resize(self.walls.x.len(), 0);
-        let density_pairs = self.densities(simd);
-        self.pressures();
-        let n_changed = self.changes.changed.len();
-        let worth_it = n_changed as f64 <= MOST_CHANGED * self.state.len() as f64;
-        let looked = worth_it.then(|| {
-            let force_pairs = self.accelerations(simd);
-            Looked { density_pairs, force_pairs, changed: n_changed as u64 }
-        });
-        self.changes.finish(self.state, self.walls, worth_it);
-        looked
+    fn with_simd<S: Simd>(self, simd: S) -> u64 {
+        self.0.densities(simd)
+    }
+}
+
+/// The accelerations by pairs.
+struct ForceChanges<'u, 'a>(&'u mut Update<'a>);
+
+impl WithSimd for ForceChanges<'_, '_> {
+    type Output = u64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> u64 {
+        self.0.accelerations(simd)
     }
 }
 
@@ -318,37 +430,21 @@ impl Changes {
         self.x.clear();
     }
 
-    /// True if it is time for a try: after one that was in vain the next ones are too, mostly. Not
-    /// before everything was computed once.
-    pub(crate) fn may_try(&mut self, n_particles: usize) -> bool {
-        if self.wait > 0 {
-            self.wait -= 1;
-            return false;
-        }
-        self.is_known(n_particles)
-    }
-
     /// True if what was computed is known here.
     pub(crate) fn is_known(&self, n_particles: usize) -> bool {
         self.x.len() == n_particles
     }
 
     /// Takes over what has been computed, and removes the marks.
-    fn finish(&mut self, state: &State, walls: &WallState, worth_it: bool) {
-        if worth_it {
-            for &i in &self.changed {
-                let i = i as usize;
-                (self.x[i], self.w[i]) = (state.x[i], state.w[i]);
-            }
-            for &j in &self.changed_walls {
-                self.wall_terms[j as usize] = walls.x[j as usize][3];
-            }
-            self.pause = 0;
-        } else {
-            self.pause = (2 * self.pause + 1).min(LONGEST_PAUSE);
-            self.wait = self.pause;
+    fn finish(&mut self, state: &State, walls: &WallState) {
+        for &i in &self.changed {
+            let i = i as usize;
+            (self.x[i], self.w[i]) = (state.x[i], state.w[i]);
         }
-        for &i in self.touched.iter().chain(&self.changed) {
+        for &j in &self.changed_walls {
+            self.wall_terms[j as usize] = walls.x[j as usize][3];
+        }
+        for &i in self.touched.iter().chain(&self.changed).chain(&self.stale) {
             self.marks[i as usize] = 0;
         }
         for &j in &self.touched_walls {
@@ -356,6 +452,7 @@ impl Changes {
         }
         self.touched.clear();
         self.changed.clear();
+        self.stale.clear();
         self.touched_walls.clear();
         self.changed_walls.clear();
     }

@@ -78,7 +78,7 @@ mod walls;
 pub use checkpoint::Checkpoint;
 pub use fluid::Fluid;
 pub use kernel::CubicSpline;
-pub use report::StepReport;
+pub use report::{Seconds, StepReport};
 pub use restraint::RestraintSettings;
 pub use settings::{Bounds, FluidError, FluidSettings};
 pub use source::{Emitter, Sink};

@@ -18,8 +18,9 @@ pub(crate) struct Lists {
     /// Where each particle's candidates start; one more at the end.
     start: Vec<u32>,
     candidates: Vec<u32>,
-    /// The same for the candidates that are within the support now, padded.
-    active_start: Vec<u32>,
+    /// How many candidates of each particle are within the support, padded to whole lanes, and which;
+    /// every particle has room for all its candidates, so that any of them can be looked at alone.
+    n_active: Vec<u32>,
     active: Vec<u32>,
     /// Squared distances in a row of cells.
     squared: Vec<f64>,
@@ -43,8 +44,15 @@ impl Lists {
     /// Neighbours of particle `k` within the support, and F for each, padded to whole lanes.
     #[inline(always)]
     pub(crate) fn active(&self, k: usize) -> (&[u32], &[f64]) {
-        let range = self.active_start[k] as usize..self.active_start[k + 1] as usize;
+        let begin = self.room_of(k);
+        let range = begin..begin + self.n_active[k] as usize;
         (&self.active[range.clone()], &self.slope[range])
+    }
+
+    /// Where the room of particle `k` for active candidates begins.
+    #[inline(always)]
+    fn room_of(&self, k: usize) -> usize {
+        self.start[k] as usize + LANES * k
     }
 
     /// Starts anew with no particle.
@@ -82,18 +90,15 @@ impl Lists {
     /// Makes room for the active candidates.
     fn finish(&mut self) {
         let n_particles = self.start.len() - 1;
-        let room = self.start[n_particles] as usize + LANES * (n_particles + 2);
+        let room = self.room_of(n_particles);
         self.active.resize(room, 0);
         self.slope.resize(room, 0.0);
-        self.active_start.clear();
-        self.active_start.resize(n_particles + 1, 0);
+        self.n_active.resize(n_particles, 0);
     }
 
     /// Finds the candidates of particle `k`, which is at `p`, that are within the support, and leaves
     /// their squared distances in the place of F for `weigh`, a multiple of `LANES` at a time.
     /// Padding names the particle `filler` at a distance of three smoothing lengths.
-    ///
-    /// Particles must be taken in order.
     #[inline(always)]
     pub(crate) fn activate(
         &mut self,
@@ -104,7 +109,7 @@ impl Lists {
         filler: u32,
     ) -> (&[u32], &mut [f64]) {
         let candidates = &self.candidates[self.start[k] as usize..self.start[k + 1] as usize];
-        let begin = self.active_start[k] as usize;
+        let begin = self.room_of(k);
         let end = begin + candidates.len() + LANES;
         let (active, r_squared) = (&mut self.active[begin..end], &mut self.slope[begin..end]);
         let mut n = 0;
@@ -121,7 +126,7 @@ impl Lists {
             r_squared[n] = 2.25 * support_squared;
             n += 1;
         }
-        self.active_start[k + 1] = (begin + n) as u32;
+        self.n_active[k] = n as u32;
         (&active[..n], &mut r_squared[..n])
     }
 }

@@ -1,7 +1,7 @@
 //! What a step did.
 
 /// Counts of one or several steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepReport {
     /// Time steps.
     pub steps: u64,
@@ -24,6 +24,39 @@ pub struct StepReport {
     pub emitted: u64,
     /// Removed particles.
     pub drained: u64,
+    /// Wall time by stage.
+    pub seconds: Seconds,
+}
+
+/// Seconds of wall time by stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Seconds {
+    /// New velocities and positions, emitters and sinks (s).
+    pub motion: f64,
+    /// Listing neighbours (s).
+    pub neighbours: f64,
+    /// Densities of all particles (s).
+    pub density: f64,
+    /// Accelerations of all particles (s).
+    pub force: f64,
+    /// Densities and accelerations by what has changed (s).
+    pub changes: f64,
+}
+
+impl Seconds {
+    /// Adds the times of further steps.
+    fn add(&mut self, other: &Seconds) {
+        self.motion += other.motion;
+        self.neighbours += other.neighbours;
+        self.density += other.density;
+        self.force += other.force;
+        self.changes += other.changes;
+    }
+
+    /// All stages (s).
+    pub fn total(&self) -> f64 {
+        self.motion + self.neighbours + self.density + self.force + self.changes
+    }
 }
 
 impl StepReport {
@@ -39,5 +72,6 @@ impl StepReport {
         self.listings += other.listings;
         self.emitted += other.emitted;
         self.drained += other.drained;
+        self.seconds.add(&other.seconds);
     }
 }

@@ -27,7 +27,7 @@ impl RestraintSettings {
             bleeding: None,
             inactivity: 0.0,
             pressure_tolerance: 0.01 * layer,
-            sweep_above: 0.3,
+            sweep_above: 0.4,
         }
     }
 

@@ -1,4 +1,4 @@
-//! The full sweeps over all particles: densities, then accelerations.
+//! The sweeps over all particles, or over those that are marked: densities, then accelerations.
 //!
 //! Each particle's sums run over its own list in a fixed order and lanes, so results do not depend on
 //! the number of threads nor on the width of the processor's registers.
@@ -12,25 +12,48 @@ use crate::walls::WallState;
 use mesh_core::par;
 use pulp::{Simd, WithSimd};
 
-/// Densities (kg/m³) of all particles of the fluid, into `density`, and of the walls that it touches;
-/// finds the neighbours within the support.
+/// The particles to look at: those whose mark has one of some bits.
+#[derive(Clone, Copy)]
+pub(crate) struct Marked<'a> {
+    pub(crate) marks: &'a [u8],
+    pub(crate) bits: u8,
+}
+
+impl Marked<'_> {
+    #[inline(always)]
+    fn has(&self, i: usize) -> bool {
+        self.marks[i] & self.bits != 0
+    }
+}
+
+/// Densities (kg/m³) of the particles of the fluid, into `density`, and of the walls that it touches;
+/// finds the neighbours within the support. `only` are the particles and walls to look at, if not all.
 pub(crate) fn densities(
     laws: &Laws,
     x: &[Point],
     walls: &mut WallState,
     neighbours: &mut Neighbours,
     density: &mut [f64],
+    only: Option<[Marked<'_>; 2]>,
 ) {
+    let [only, only_walls] = [0, 1].map(|k| only.map(|both| both[k]));
     let seen = &*walls;
     par::blocks(&mut neighbours.blocks, density, BLOCK, |b, block, density| {
         let first = b * BLOCK;
-        lanes::run(Densities { laws, x, walls: seen, first, block, density });
+        lanes::run(Densities { laws, x, walls: seen, first, block, density, only });
     });
     let WallState { x: places, own, density, .. } = walls;
     par::blocks(&mut neighbours.wall_blocks, density, BLOCK, |b, lists, density| {
-        let range = b * BLOCK..b * BLOCK + density.len();
-        let (places, own) = (&places[range.clone()], &own[range]);
-        lanes::run(WallDensities { laws, x, places, own, lists, density });
+        lanes::run(WallDensities {
+            laws,
+            x,
+            places,
+            own,
+            first: b * BLOCK,
+            lists,
+            density,
+            only: only_walls,
+        });
     });
 }
 
@@ -40,8 +63,10 @@ struct WallDensities<'a> {
     x: &'a [Point],
     places: &'a [Point],
     own: &'a [f64],
+    first: usize,
     lists: &'a mut Lists,
     density: &'a mut [f64],
+    only: Option<Marked<'a>>,
 }
 
 impl WithSimd for WallDensities<'_> {
@@ -52,12 +77,16 @@ impl WithSimd for WallDensities<'_> {
         let kernel = &self.laws.kernel;
         let support_squared = kernel.support() * kernel.support();
         for (k, slot) in self.density.iter_mut().enumerate() {
-            let (_, weights) = self.lists.activate(k, &self.places[k], self.x, support_squared, 0);
+            let i = self.first + k;
+            if self.only.is_some_and(|only| !only.has(i)) {
+                continue;
+            }
+            let (_, weights) = self.lists.activate(k, &self.places[i], self.x, support_squared, 0);
             let mut fluid = Four::splat(simd, 0.0);
             for four in weights.chunks_exact_mut(LANES) {
                 fluid = fluid + weigh(simd, kernel, four);
             }
-            *slot = self.own[k] + self.laws.mass * fluid.total();
+            *slot = self.own[i] + self.laws.mass * fluid.total();
         }
     }
 }
@@ -71,6 +100,7 @@ struct Densities<'a> {
     first: usize,
     block: &'a mut Block,
     density: &'a mut [f64],
+    only: Option<Marked<'a>>,
 }
 
 impl WithSimd for Densities<'_> {
@@ -84,11 +114,14 @@ impl WithSimd for Densities<'_> {
 
 #[inline(always)]
 fn densities_of_block<S: Simd>(simd: S, task: Densities<'_>) {
-    let Densities { laws, x, walls, first, block, density } = task;
+    let Densities { laws, x, walls, first, block, density, only } = task;
     let kernel = &laws.kernel;
     let support_squared = kernel.support() * kernel.support();
     let at_zero = kernel.value(0.0);
     for (k, slot) in density.iter_mut().enumerate() {
+        if only.is_some_and(|only| !only.has(first + k)) {
+            continue;
+        }
         let p = &x[first + k];
         let (_, weights) = block.fluid.activate(k, p, x, support_squared, (first + k) as u32);
         let mut fluid = Four::splat(simd, 0.0);
@@ -113,6 +146,14 @@ fn weigh<S: Simd>(simd: S, kernel: &CubicSpline, four: &mut [f64]) -> Four<S> {
     value
 }
 
+/// F in the place of squared distances, a multiple of `LANES`.
+#[inline(always)]
+fn slopes<S: Simd>(simd: S, kernel: &CubicSpline, r_squared: &mut [f64]) {
+    for four in r_squared.chunks_exact_mut(LANES) {
+        weigh(simd, kernel, four);
+    }
+}
+
 #[inline(always)]
 fn points<'a>(list: &'a [Point], at: &[u32]) -> [&'a Point; LANES] {
     [0, 1, 2, 3].map(|l| &list[at[l] as usize])
@@ -123,7 +164,16 @@ fn numbers<S: Simd>(simd: S, list: &[f64], at: &[u32]) -> Four<S> {
     Four::new(simd, [0, 1, 2, 3].map(|l| list[at[l] as usize]))
 }
 
-/// Accelerations by pressure and viscosity (m/s²), without gravity, into `a`.
+/// Which accelerations to compute, if not all.
+#[derive(Clone, Copy)]
+pub(crate) struct Stale<'a> {
+    /// The particles to look at.
+    pub(crate) only: Marked<'a>,
+    /// Bits of those whose neighbours within the support are known from [`densities`].
+    pub(crate) known: u8,
+}
+
+/// Accelerations by pressure, viscosity and gravity (m/s²), into `a`.
 ///
 /// `x` and the positions of `walls` carry P = p/ρ², and `w`, the effective velocities, carry ρ.
 pub(crate) fn accelerations(
@@ -132,11 +182,12 @@ pub(crate) fn accelerations(
     w: &[Point],
     walls: &WallState,
     neighbours: &mut Neighbours,
+    (gravity, stale): ([f64; 3], Option<Stale<'_>>),
     a: &mut [Point],
 ) {
     par::blocks(&mut neighbours.blocks, a, BLOCK, |b, block, a| {
         let first = b * BLOCK;
-        lanes::run(Accelerations { laws, x, w, walls, first, block, a });
+        lanes::run(Accelerations { laws, x, w, walls, first, block, gravity, stale, a });
     });
 }
 
@@ -147,7 +198,9 @@ struct Accelerations<'a> {
     w: &'a [Point],
     walls: &'a WallState,
     first: usize,
-    block: &'a Block,
+    block: &'a mut Block,
+    gravity: [f64; 3],
+    stale: Option<Stale<'a>>,
     a: &'a mut [Point],
 }
 
@@ -162,8 +215,21 @@ impl WithSimd for Accelerations<'_> {
 
 #[inline(always)]
 fn accelerations_of_block<S: Simd>(simd: S, task: Accelerations<'_>) {
-    let Accelerations { laws, x, w, walls, first, block, a } = task;
+    let Accelerations { laws, x, w, walls, first, block, gravity, stale, a } = task;
+    let support_squared = laws.kernel.support() * laws.kernel.support();
     for (k, slot) in a.iter_mut().enumerate() {
+        if let Some(Stale { only, known }) = stale {
+            if !only.has(first + k) {
+                continue;
+            }
+            if only.marks[first + k] & known == 0 {
+                let p = &x[first + k];
+                let (_, r) = block.fluid.activate(k, p, x, support_squared, (first + k) as u32);
+                slopes(simd, &laws.kernel, r);
+                let (_, r) = block.wall.activate(k, p, &walls.x, support_squared, 0);
+                slopes(simd, &laws.kernel, r);
+            }
+        }
         let here = Side::splat(simd, &x[first + k], &w[first + k]);
         let mut sum = [Four::splat(simd, 0.0); 3];
         let (active, slopes) = block.fluid.active(k);
@@ -181,6 +247,7 @@ fn accelerations_of_block<S: Simd>(simd: S, task: Accelerations<'_>) {
             let by = laws.by_wall(&here, &[x0, x1, x2], term, mass, slope);
             sum = [sum[0] + by[0], sum[1] + by[1], sum[2] + by[2]];
         }
-        *slot = [sum[0].total(), sum[1].total(), sum[2].total(), 0.0];
+        let [gx, gy, gz] = gravity;
+        *slot = [sum[0].total() + gx, sum[1].total() + gy, sum[2].total() + gz, 0.0];
     }
 }

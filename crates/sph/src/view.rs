@@ -4,6 +4,7 @@ use crate::fluid::Fluid;
 use crate::settings::{FluidError, FluidSettings};
 use crate::source::{Emitter, Sink};
 use crate::walls::Walls;
+use arps::{Motion, Restraint};
 use nalgebra::Vector3;
 
 /// A particle as it is now.
@@ -38,6 +39,27 @@ impl Energy {
     /// The sum (J).
     pub fn total(&self) -> f64 {
         self.kinetic + self.internal + self.potential
+    }
+}
+
+impl<R: Restraint> Fluid<R> {
+    /// What the policy makes of each particle, in the order of [`Fluid::particles`]. One slower than
+    /// [`RestraintSettings::inactivity`](crate::RestraintSettings::inactivity) rests, too.
+    pub fn motions(&self) -> impl ExactSizeIterator<Item = Motion> + '_ {
+        let (mass, time) = (self.laws.mass, self.time);
+        let vector = |p: &[f64; 4]| Vector3::new(p[0], p[1], p[2]);
+        (0..self.len()).map(move |i| {
+            let Some((policy, settings)) = &self.restraint else { return Motion::Full };
+            let x = vector(&self.state.x[i]);
+            let held = policy.at(&arps::Particle { index: i, mass, x, time });
+            let p = vector(&self.state.u[i]) * mass;
+            match held.motion(&p) {
+                Motion::Transition if held.velocity(&p).norm() < settings.inactivity => {
+                    Motion::Rest
+                }
+                motion => motion,
+            }
+        })
     }
 }
 

@@ -47,7 +47,7 @@ impl Figure {
     /// The root mean square of different things; `None` if there are none.
     pub(super) fn rms(values: &[f64], unit: &'static str, note: &str) -> Option<Figure> {
         let squares: Vec<f64> = values.iter().map(|x| x * x).collect();
-        Figure::told(mean(&squares).map(f64::sqrt), values, unit, Of::Different, note)
+        Figure::made(Of::Things, mean(&squares).map(f64::sqrt), values, unit, note)
     }
 
     /// A number that every repetition would give again: no times, nor what is made of times.

@@ -9,6 +9,7 @@ mod baseline;
 mod child;
 mod contact;
 mod cpu_time;
+mod example;
 mod figure;
 mod fixed_or_adaptive;
 mod flag;
@@ -25,6 +26,7 @@ mod provenance;
 mod report;
 mod resume;
 mod run_info;
+mod sph;
 mod stability;
 mod stages;
 mod statistics;
@@ -64,6 +66,7 @@ const BENCHMARKS: &[Benchmark] = &[
     flag::BENCHMARK,
     contact::BENCHMARK,
     view::BENCHMARK,
+    sph::BENCHMARK,
     pareto::BENCHMARK,
     stability::BENCHMARK,
     stiff::BENCHMARK,

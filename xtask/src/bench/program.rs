@@ -55,19 +55,8 @@ impl Program {
     /// # Errors
     /// If it does not build.
     pub(super) fn build(root: &Path) -> Result<Program, Failure> {
-        let words = "build --release --package organza --message-format json-render-diagnostics";
-        let cargo = Command::new("cargo")
-            .args(words.split(' '))
-            .current_dir(root)
-            .stderr(Stdio::inherit())
-            .output()
-            .map_err(unable("cannot start cargo"))?;
-        if !cargo.status.success() {
-            return Err(Failure::Unable("the program does not build".into()));
-        }
-        executable(&String::from_utf8_lossy(&cargo.stdout))
-            .map(|path| Program { path, root: root.to_owned() })
-            .ok_or_else(|| Failure::Unable("cargo names no binary `organza`".into()))
+        let path = built(root, "--package organza --bin organza", "organza", "bin")?;
+        Ok(Program { path, root: root.to_owned() })
     }
 
     /// Runs a simulation on one thread.
@@ -198,7 +187,7 @@ impl Program {
     }
 }
 
-fn unable<E: Display>(what: impl Display) -> impl Fn(E) -> Failure {
+pub(super) fn unable<E: Display>(what: impl Display) -> impl Fn(E) -> Failure {
     move |error| Failure::Unable(format!("{what}: {error}"))
 }
 
@@ -209,12 +198,31 @@ fn last_error(text: &str) -> String {
     error.or_else(|| lines.next()).unwrap_or_default().to_owned()
 }
 
-/// The binary in what Cargo tells of a build: one JSON object a line.
-fn executable(messages: &str) -> Option<PathBuf> {
+/// Builds a target with Cargo, which also says where it is.
+///
+/// # Errors
+/// If it does not build.
+pub(super) fn built(root: &Path, words: &str, name: &str, kind: &str) -> Result<PathBuf, Failure> {
+    let cargo = Command::new("cargo")
+        .args(["build", "--release", "--message-format", "json-render-diagnostics"])
+        .args(words.split(' '))
+        .current_dir(root)
+        .stderr(Stdio::inherit())
+        .output()
+        .map_err(unable("cannot start cargo"))?;
+    if !cargo.status.success() {
+        return Err(Failure::Unable(format!("{name} does not build")));
+    }
+    executable(&String::from_utf8_lossy(&cargo.stdout), name, kind)
+        .ok_or_else(|| Failure::Unable(format!("cargo names no {kind} `{name}`")))
+}
+
+/// The executable in what Cargo tells of a build: one JSON object a line.
+fn executable(messages: &str, name: &str, kind: &str) -> Option<PathBuf> {
     messages.lines().filter_map(|line| serde_json::from_str::<Value>(line).ok()).find_map(
         |message| {
-            let ours =
-                message["target"]["name"] == "organza" && message["target"]["kind"][0] == "bin";
+            let target = &message["target"];
+            let ours = target["name"] == name && target["kind"][0] == kind;
             message["executable"].as_str().filter(|_| ours).map(PathBuf::from)
         },
     )
@@ -239,7 +247,7 @@ mod tests {
             not JSON
             {"reason":"compiler-artifact","target":{"name":"organza","kind":["bin"]},"executable":"x/organza"}
             {"reason":"build-finished","success":true}"#;
-        assert_eq!(executable(messages), Some("x/organza".into()));
-        assert_eq!(executable("{}\n"), None);
+        assert_eq!(executable(messages, "organza", "bin"), Some("x/organza".into()));
+        assert_eq!(executable("{}\n", "organza", "bin"), None);
     }
 }

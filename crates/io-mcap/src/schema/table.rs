@@ -224,6 +224,33 @@ pub(super) const MESSAGES: &[Description] = &[
             Field("entities", 2, Many, Of("foxglove.SceneEntity")),
         ],
     ),
+    Description {
+        package: "foxglove",
+        name: "PackedElementField",
+        fields: &[
+            Field("name", 1, One, Text),
+            Field("offset", 2, One, Fixed32),
+            Field("type", 3, One, Choice("NumericType")),
+        ],
+        choices: &[(
+            "NumericType",
+            &[
+                "UNKNOWN", "UINT8", "INT8", "UINT16", "INT16", "UINT32", "INT32", "FLOAT32",
+                "FLOAT64",
+            ],
+        )],
+    },
+    foxglove(
+        "PointCloud",
+        &[
+            Field("timestamp", 1, One, TIMESTAMP),
+            Field("frame_id", 2, One, Text),
+            Field("pose", 3, One, POSE),
+            Field("point_stride", 4, One, Fixed32),
+            Field("fields", 5, Many, Of("foxglove.PackedElementField")),
+            Field("data", 6, One, Bytes),
+        ],
+    ),
     foxglove(
         "FrameTransform",
         &[

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex};
 
 use io_mcap::{
     Attachment, Camera, Checkpoint, Column, Frame, Header, Limits, OwnedFrame, OwnedGarment,
-    OwnedObstacle, OwnedTransform, Recorder, Recording,
+    OwnedObstacle, OwnedTransform, Particle, Recorder, Recording,
 };
 
 /// SplitMix64.
@@ -71,6 +71,18 @@ pub(crate) fn tetrahedron(name: &str, index: u64) -> OwnedObstacle {
     }
 }
 
+/// A particle, the first with numbers that are none.
+fn particle(id: u32) -> Particle {
+    Particle {
+        id,
+        position: [0.1 * f64::from(id), -0.0, f64::from_bits(0x7ff8_0000_0000_0005)],
+        velocity: [-0.0, f32::from_bits(0x7fc0_0001), f32::MIN_POSITIVE],
+        speed: 0.5,
+        density: 1000.0 + id as f32,
+        state: (id % 3) as u8,
+    }
+}
+
 pub(crate) fn frame(index: u64) -> OwnedFrame {
     let mut random = Random(index);
     let mut garments = vec![
@@ -85,6 +97,7 @@ pub(crate) fn frame(index: u64) -> OwnedFrame {
         time_s: 0.1 * index as f64,
         garments,
         obstacles: (0..index.min(2)).map(|k| tetrahedron(&format!("rock-{k}"), index)).collect(),
+        fluid: (index % 3 != 1).then(|| (0..index as u32).map(particle).collect()),
         camera: (index % 4 != 3).then(|| Camera {
             width_px: 1920,
             height_px: 1080,
@@ -148,6 +161,7 @@ pub(crate) fn lend<T>(frame: &OwnedFrame, use_it: impl FnOnce(&Frame<'_>) -> T) 
         time_s: frame.time_s,
         garments: &garments,
         obstacles: &obstacles,
+        fluid: frame.fluid.as_deref(),
         camera: frame.camera,
         transforms: &transforms,
         report: &frame.report,
@@ -220,6 +234,14 @@ pub(crate) fn frame_bits(frame: &OwnedFrame) -> String {
         .iter()
         .map(|o| (&o.name, f64s(o.points.as_flattened()), &o.triangles, o.color.map(f32::to_bits)))
         .collect();
+    let fluid = frame.fluid.as_ref().map(|particles| {
+        let bits = |p: &Particle| {
+            let singles = [&p.velocity[..], &[p.speed, p.density]].concat();
+            let singles: Vec<u32> = singles.into_iter().map(f32::to_bits).collect();
+            (p.id, f64s(&p.position), singles, p.state)
+        };
+        particles.iter().map(bits).collect::<Vec<_>>()
+    });
     let camera = frame.camera.map(|c| {
         let numbers = [&c.focal_px[..], &c.center_px, &c.position, &c.rotation].concat();
         (c.width_px, c.height_px, f64s(&numbers))
@@ -230,7 +252,9 @@ pub(crate) fn frame_bits(frame: &OwnedFrame) -> String {
         .map(|t| (&t.name, f64s(&[&t.translation[..], &t.rotation].concat())))
         .collect();
     let (index, time_s, report) = (frame.index, frame.time_s.to_bits(), &frame.report);
-    format!("{index} {time_s} {garments:?} {obstacles:?} {camera:?} {transforms:?} {report}")
+    format!(
+        "{index} {time_s} {garments:?} {obstacles:?} {fluid:?} {camera:?} {transforms:?} {report}"
+    )
 }
 
 /// Everything in a checkpoint as bits.

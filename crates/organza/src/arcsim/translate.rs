@@ -143,6 +143,7 @@ fn translate(
         cloths: cloths.into_iter().collect::<Option<_>>()?,
         handles,
         obstacles,
+        fluids: Vec::new(),
         contact,
         camera: extras.camera,
         shots: Vec::new(),

@@ -133,11 +133,13 @@ pub(crate) struct Check {
 /// One file per frame: frame_00000.obj and so on. OBJ has a group per garment, exact positions, and
 /// material coordinates in metres as texture coordinates; PLY is binary. Obstacles, where the scene
 /// has any, are in a second file per frame: obstacles_00000.obj and so on, a group per obstacle.
+/// Particles of a fluid are in one more: fluid_00000.ply and so on.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
   organza export flag.mcap --format obj --out meshes
-  organza export flag.mcap --format ply --out meshes --frames 100..200")]
+  organza export flag.mcap --format ply --out meshes --frames 100..200
+  organza export dam-break.mcap --format bgeo --out particles")]
 pub(crate) struct Export {
     /// Recording to read
     #[arg(value_name = "RUN.mcap")]
@@ -223,6 +225,8 @@ pub(crate) enum MeshFormat {
     Obj,
     /// Binary PLY
     Ply,
+    /// Particles alone, as Partio and SPlisHSPlasH read them
+    Bgeo,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -235,7 +239,7 @@ pub(crate) enum View {
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Color {
-    /// Each garment in its colour
+    /// Each garment in its colour; particles blue that move freely, green in transition, red at rest
     Plain,
     /// Larger principal stretch: violet 0.95, green 1, yellow 1.05
     Stretch,
@@ -245,6 +249,8 @@ pub(crate) enum Color {
     View,
     /// What the scene's camera sees: green its front, orange its back, grey what is outside
     Visibility,
+    /// Speed of particles, from violet at rest to yellow at the greatest of the recording
+    Speed,
 }
 
 fn size(text: &str) -> Result<Size, String> {

@@ -4,6 +4,7 @@ use std::fmt::{self, Write};
 use std::ops::Range;
 
 use organza::fabric::Fabric;
+use organza::fluid::Water;
 use organza::record::{garments, place};
 use organza::scene::{self, Cloth, Dialect, LoadOptions, Loaded};
 use organza::world::World;
@@ -78,6 +79,9 @@ fn write(out: &mut String, loaded: &Loaded, world: &World) -> fmt::Result {
             presence(obstacle.times()),
         )?;
     }
+    if let Some(water) = &world.fluid {
+        fluid(out, water)?;
+    }
     match &world.contact {
         None => writeln!(out, "contact: none")?,
         Some(contact) => writeln!(
@@ -91,9 +95,29 @@ fn write(out: &mut String, loaded: &Loaded, world: &World) -> fmt::Result {
             },
         )?,
     }
+    if !world.has_cloth() {
+        return Ok(());
+    }
     let wind = scene.wind.as_ref().map_or("none".into(), |w| format!("{:?} m/s", w.velocity));
     writeln!(out, "wind: {wind}")?;
     writeln!(out, "forces: {}", world.force_names().join(", "))
+}
+
+fn fluid(out: &mut String, water: &Water) -> fmt::Result {
+    let (fluid, settings) = (&water.fluid, water.fluid.settings());
+    writeln!(
+        out,
+        "fluid {}: {} particles {} m apart, {:.4} kg, {} particles of walls, sound {:.4} m/s, steps \
+         of {:.3e} s at the start, restraint: {}",
+        water.name,
+        fluid.len(),
+        settings.spacing,
+        fluid.len() as f64 * fluid.particle_mass(),
+        fluid.walls().n_particles(),
+        settings.sound_speed,
+        fluid.step_bound(),
+        if water.is_restrained { "yes" } else { "none" },
+    )
 }
 
 /// When an obstacle is there, if not always.

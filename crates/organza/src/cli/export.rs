@@ -11,6 +11,7 @@ pub(crate) fn run(args: &Export) -> Result<(), Failure> {
     let format = match args.format {
         MeshFormat::Obj => Format::Obj,
         MeshFormat::Ply => Format::Ply,
+        MeshFormat::Bgeo => Format::Bgeo,
     };
     let range = files.frames.unwrap_or_default();
     let mut progress = None;

@@ -59,7 +59,9 @@ impl From<ExportError> for Failure {
     fn from(error: ExportError) -> Self {
         let code = match &error {
             ExportError::Files(files) => code(files),
-            ExportError::Recording(_) | ExportError::NoFrames { .. } => BAD_INPUT,
+            ExportError::Recording(_)
+            | ExportError::NoFrames { .. }
+            | ExportError::NoFluid { .. } => BAD_INPUT,
         };
         Failure::Error { code, message: error.to_string() }
     }

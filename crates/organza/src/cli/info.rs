@@ -3,7 +3,7 @@
 use std::fmt::{self, Write};
 
 use organza::info::Info;
-use organza::report::FrameReport;
+use organza::report::{FluidSummary, FrameReport};
 
 use super::{Failure, args, output};
 
@@ -46,6 +46,21 @@ const COLUMNS: [Column; 21] = [
     ("remesh s", 10, |r| seconds(r.seconds.remesh)),
 ];
 
+/// Further columns where there is a fluid.
+const FLUID_COLUMNS: [Column; 7] = [
+    ("particles", 10, |r| of_fluid(r, |f| f.particles.to_string())),
+    ("active", 8, |r| of_fluid(r, |f| f.active.to_string())),
+    ("transit", 8, |r| of_fluid(r, |f| f.transition.to_string())),
+    ("rest", 8, |r| of_fluid(r, |f| f.restrained.to_string())),
+    ("f.steps", 8, |r| of_fluid(r, |f| f.steps.to_string())),
+    ("sweeps", 7, |r| of_fluid(r, |f| f.sweeps.to_string())),
+    ("fluid s", 10, |r| seconds(r.seconds.fluid)),
+];
+
+fn of_fluid(report: &FrameReport, show: fn(&FluidSummary) -> String) -> String {
+    report.fluid.as_ref().map_or("-".into(), show)
+}
+
 fn seconds(s: f64) -> String {
     format!("{s:.4}")
 }
@@ -61,20 +76,23 @@ fn write(out: &mut String, info: &Info) -> fmt::Result {
     if !info.obstacles.is_empty() {
         writeln!(out, "obstacles: {}", join(&info.obstacles))?;
     }
+    info.fluid.iter().try_for_each(|fluid| writeln!(out, "fluid: {fluid}"))?;
     writeln!(out, "attached: {}\n", join(&info.attachments))?;
-    COLUMNS.iter().try_for_each(|(name, width, _)| write!(out, "{name:>width$}"))?;
+    let of_fluid: &[Column] = if info.fluid.is_some() { &FLUID_COLUMNS } else { &[] };
+    let columns = || COLUMNS.iter().chain(of_fluid);
+    columns().try_for_each(|(name, width, _)| write!(out, "{name:>width$}"))?;
     writeln!(out)?;
     for frame in &info.frames {
-        for (_, width, content) in COLUMNS {
+        for (_, width, content) in columns() {
             // A blank of its own keeps the columns apart where a number fills its column.
             write!(out, " {:>1$}", content(frame), width - 1)?;
         }
         writeln!(out)?;
     }
     if !info.totals.is_empty() {
-        writeln!(out, "\n{:<20}{:>14}{:>14}{:>14}{:>14}", "", "min", "mean", "max", "sum")?;
+        writeln!(out, "\n{:<27}{:>14}{:>14}{:>14}{:>14}", "", "min", "mean", "max", "sum")?;
         for (name, spread) in &info.totals {
-            write!(out, "{name:<20}")?;
+            write!(out, "{name:<27}")?;
             for value in [spread.min, spread.mean, spread.max, spread.sum] {
                 write!(out, " {:>13}", number(value))?;
             }

@@ -21,6 +21,7 @@ pub(crate) fn run(args: &Render) -> Result<(), Failure> {
             Color::Size => Colouring::Size,
             Color::View => Colouring::View,
             Color::Visibility => Colouring::Visibility,
+            Color::Speed => Colouring::Speed,
         },
         frustum: args.frustum,
     };

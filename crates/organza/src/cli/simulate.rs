@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use organza::picture::{poster_path, write_poster};
 use organza::record::{Run, RunError, RunOptions};
 use organza::scene::{self, LoadOptions};
+use organza::world::StepError;
 
 use super::args::Simulate;
 use super::progress::Progress;
@@ -85,7 +86,10 @@ pub(crate) fn finish(mut run: Run, quiet: bool) -> Result<(), Failure> {
     loop {
         match run.next_frame() {
             Ok(Some(report)) => {
-                progress.done(report.frame, || format!("{} faces", report.faces));
+                progress.done(report.frame, || match &report.fluid {
+                    Some(fluid) if report.faces == 0 => format!("{} particles", fluid.particles),
+                    _ => format!("{} faces", report.faces),
+                });
                 report.warnings.iter().for_each(|warning| progress.warn(warning));
                 summary.add(&report);
             }
@@ -112,6 +116,10 @@ fn half_way(path: &Path, last: u64, error: &RunError) -> Failure {
     let path = path.display();
     let kept = format!("{path} keeps frames 0 to {last}");
     let hint = match error {
+        RunError::Step(StepError::Fluid { .. }) => format!(
+            "{kept}. The same run fails at the same place: give the fluid a larger `domain`, or sinks \
+             where it leaves it"
+        ),
         RunError::Step(_) => format!(
             "{kept}. The same run fails at the same place: try smaller steps, such as \
              --set substeps=16 (`organza resume {path}` helps only if the cause lay outside)"

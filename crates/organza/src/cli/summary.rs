@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use organza::report::FrameReport;
+use organza::report::{FluidSummary, FrameReport};
 
 /// Sums over the frames of a run.
 #[derive(Debug, Default)]
@@ -12,6 +12,7 @@ pub(crate) struct Summary {
     seconds: f64,
     faces: u64,
     faces_range: Option<[usize; 2]>,
+    fluid: Option<FluidSummary>,
     stages: usize,
     unconverged: usize,
     retries: u32,
@@ -26,6 +27,7 @@ impl Summary {
         self.faces += report.faces as u64;
         let [low, high] = self.faces_range.unwrap_or([report.faces; 2]);
         self.faces_range = Some([low.min(report.faces), high.max(report.faces)]);
+        self.fluid = report.fluid;
         self.stages += report.stages;
         self.unconverged += report.unconverged_stages;
         self.retries += report.retries;
@@ -51,6 +53,13 @@ impl Summary {
                  {low} to {high}",
                 seconds / n,
                 self.faces as f64 / n,
+            )?;
+        }
+        if let Some(FluidSummary { particles, active, transition, restrained, .. }) = self.fluid {
+            writeln!(
+                out,
+                "{particles} particles in the end: {active} move freely, {transition} are in \
+                 transition, {restrained} rest"
             )?;
         }
         if self.unconverged > 0 {

@@ -21,6 +21,12 @@ pub enum ExportError {
         /// The frames there are, in words.
         held: String,
     },
+    /// The format holds particles alone, and the recording has none.
+    #[error("{}: has no fluid, and the format holds nothing else", path.display())]
+    NoFluid {
+        /// The recording.
+        path: PathBuf,
+    },
     /// A file cannot be written.
     #[error(transparent)]
     Files(#[from] FilesError),

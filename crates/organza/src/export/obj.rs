@@ -3,9 +3,9 @@
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-use io_mcap::{OwnedGarment, OwnedObstacle};
+use io_mcap::{OwnedGarment, OwnedObstacle, Particle};
 
-use super::{check_finite, check_points};
+use super::{check_finite, check_particles, check_points};
 
 /// Writes garments as groups `g NAME` of one OBJ file: positions `v` (m), material coordinates `vt`
 /// (m) for every corner, so that seams survive, and faces `f v/vt`. Numbers are the shortest that
@@ -39,6 +39,18 @@ pub fn write_obj(out: &mut impl Write, garments: &[OwnedGarment]) -> io::Result<
         first_vt += numbers.len();
     }
     Ok(())
+}
+
+/// Writes particles as points: `v` (m), then `p` for each.
+///
+/// # Errors
+/// As for [`write_obj`].
+pub fn write_fluid_obj(out: &mut impl Write, particles: &[Particle]) -> io::Result<()> {
+    check_particles(particles)?;
+    for Particle { position: [x, y, z], .. } in particles {
+        writeln!(out, "v {x:?} {y:?} {z:?}")?;
+    }
+    (1..=particles.len()).try_for_each(|k| writeln!(out, "p {k}"))
 }
 
 /// Writes obstacles as groups `g NAME` of one OBJ file, with positions `v` (m) and faces `f v`;

@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use io_mcap::{OwnedGarment, OwnedObstacle};
+use io_mcap::{OwnedGarment, OwnedObstacle, Particle};
 
-use super::{check_finite, check_points};
+use super::{check_finite, check_particles, check_points};
 
 /// Writes garments as one binary little-endian PLY file: vertices `x y z` (double, m); faces with
 /// `vertex_indices`, `texcoord` (float, six per triangle: the material coordinates of its corners,
@@ -51,6 +51,31 @@ pub fn write_obstacles_ply(out: &mut impl Write, obstacles: &[OwnedObstacle]) ->
             out.write_all(&k.to_le_bytes())?;
         }
         first += obstacle.points.len() as u32;
+    }
+    Ok(())
+}
+
+/// Writes particles as one binary little-endian PLY file of vertices: `x y z` (double, m), `vx vy vz`
+/// and effective `speed` (float, m/s), `density` (float, kg/m³), `id` (uint), `state` (uchar: 0 moves
+/// freely, 1 is in transition, 2 rests).
+///
+/// # Errors
+/// As for [`write_ply`].
+pub fn write_fluid_ply(out: &mut impl Write, particles: &[Particle]) -> io::Result<()> {
+    check_particles(particles)?;
+    writeln!(out, "ply\nformat binary_little_endian 1.0\nelement vertex {}", particles.len())?;
+    for property in ["double x", "double y", "double z", "float vx", "float vy", "float vz"] {
+        writeln!(out, "property {property}")?;
+    }
+    writeln!(out, "property float speed\nproperty float density")?;
+    writeln!(out, "property uint id\nproperty uchar state\nend_header")?;
+    for p in particles {
+        p.position.iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
+        let [vx, vy, vz] = p.velocity;
+        let singles = [vx, vy, vz, p.speed, p.density];
+        singles.iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
+        out.write_all(&p.id.to_le_bytes())?;
+        out.write_all(&[p.state])?;
     }
     Ok(())
 }

@@ -22,7 +22,8 @@ const BACK: Rgb = [217, 182, 138];
 /// What the colours of a picture show.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Colouring {
-    /// Each garment in its colour, the back in another.
+    /// Each garment in its colour, the back in another. Particles in blue that move freely, in green
+    /// in transition, in red at rest.
     #[default]
     Plain,
     /// The larger principal stretch of every triangle, from dark violet at [`STRETCH_RANGE`]'s start
@@ -36,6 +37,8 @@ pub enum Colouring {
     /// Green for what the scene's camera sees, orange for what faces away in its picture, grey for what
     /// is outside.
     Visibility,
+    /// The speed of every particle, from dark violet at rest to yellow at the greatest of the recording.
+    Speed,
 }
 
 /// The colours of one garment.
@@ -74,7 +77,7 @@ impl Colouring {
                 let colour = |u| VIRIDIS.colour_in(size(u), low, high);
                 OwnedPaint::Triangles(garment.material.iter().map(colour).collect())
             }
-            (Colouring::Plain | Colouring::View | Colouring::Visibility, _) => {
+            (Colouring::Plain | Colouring::View | Colouring::Visibility | Colouring::Speed, _) => {
                 let [r, g, b, _] = garment.color;
                 // A float cast saturates: no colour can leave its range.
                 OwnedPaint::Sides { front: [r, g, b].map(|c| (255.0 * c).round() as u8) }

@@ -42,8 +42,10 @@ fn through(camera: &io_mcap::Camera, frame: &OwnedFrame) -> Viewpoint {
     let rotation = UnitQuaternion::new_normalize(Quaternion::from(camera.rotation));
     let eye = Vector3::from(camera.position);
     let forward = rotation * Vector3::z();
-    // The distance of the target decides how near things are still drawn: that of the cloth.
-    let bounds = Bounds::of(frame.garments.iter().flat_map(|g| g.points.iter().copied()));
+    // The distance of the target decides how near things are still drawn: that of cloth and fluid.
+    let cloth = frame.garments.iter().flat_map(|g| g.points.iter().copied());
+    let fluid = frame.fluid.iter().flatten().map(|particle| particle.position);
+    let bounds = Bounds::of(cloth.chain(fluid));
     let middle = 0.5 * (Vector3::from(bounds.min) + Vector3::from(bounds.max));
     let distance = (middle - eye).norm();
     let distance = if bounds.is_empty() || distance == 0.0 { 1.0 } else { distance };

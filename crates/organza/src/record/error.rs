@@ -95,6 +95,7 @@ pub fn place(loaded: &Loaded, error: &BuildError) -> SceneErrors {
         BuildError::Obstacle { obstacle, message } => {
             (format!("obstacles[{obstacle}].mesh"), message.clone())
         }
+        BuildError::Fluid { key, message } => (format!("fluids[0].{key}"), message.clone()),
         BuildError::TooLarge(_) => ("cloths".into(), error.to_string()),
     };
     loaded.places.issue(IssueKind::Value, &path, message).into()

@@ -22,6 +22,9 @@ const CHECKPOINT_EVERY: &str = "checkpoint_every_frames";
 const OWN_WORLD: &str = "own_world";
 /// Names of the obstacles, a list as JSON; absent where there are none.
 pub(crate) const OBSTACLES: &str = "obstacles";
+/// Name of the fluid and distance of its particles at rest (m); absent where there is none.
+pub(crate) const FLUID: &str = "fluid";
+pub(crate) const FLUID_SPACING: &str = "fluid_spacing_m";
 
 /// How a run was made. With the attached files it decides every bit of its frames.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -93,6 +96,10 @@ impl Settings {
         if !scene.obstacles.is_empty() {
             let names: Vec<&str> = scene.obstacles.iter().map(|o| o.name.as_str()).collect();
             metadata.insert(OBSTACLES.to_owned(), text(names.into()));
+        }
+        if let Some(fluid) = &scene.fluid {
+            metadata.insert(FLUID.to_owned(), fluid.name.clone());
+            metadata.insert(FLUID_SPACING.to_owned(), fluid.file.spacing_m.to_string());
         }
         if self.own_world {
             metadata.insert(OWN_WORLD.to_owned(), true.to_string());

@@ -1,9 +1,9 @@
 //! A scene that has passed every check: defaults filled in, names and files resolved.
 
 use super::format::{
-    BendingModel, Camera, Capsule, CharacterFile, Cuboid, Damping, Disc, GarmentKind, Gltf, Grid,
-    Integrator, LinearSolver, Multipliers, Newton, Plane, Poncho, Recording, Remeshing, Select,
-    Skirt, Sphere, Spin, Torus, Tube, Tunic, Wind,
+    BendingModel, Camera, Capsule, CharacterFile, Cuboid, Damping, Disc, FluidFile, GarmentKind,
+    Gltf, Grid, Integrator, LinearSolver, Multipliers, Newton, Plane, Poncho, Recording, Remeshing,
+    Select, Skirt, Sphere, Spin, Torus, Tube, Tunic, Wind,
 };
 use super::motion::{Motion, Transform};
 use crate::contact::ContactSettings;
@@ -33,12 +33,14 @@ pub struct Scene {
     pub linear_solver: LinearSolver,
     /// Relative residual at which iterative linear solvers stop (1).
     pub linear_tolerance: f64,
-    /// The pieces of cloth, at least one.
+    /// The pieces of cloth; there is at least one, or a fluid.
     pub cloths: Vec<Cloth>,
     /// What holds or moves them.
     pub handles: Vec<Handle>,
     /// Bodies that cloth cannot pass.
     pub obstacles: Vec<Obstacle>,
+    /// The fluid.
+    pub fluid: Option<Fluid>,
     /// How things touch; absent where nothing does.
     pub contact: Option<ContactSettings>,
     /// The view of pictures.
@@ -195,6 +197,19 @@ pub struct Obstacle {
     pub start_s: f64,
     /// When it is gone (s); infinite for never.
     pub end_s: f64,
+}
+
+/// A fluid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fluid {
+    /// Name.
+    pub name: String,
+    /// Indices of the scene's obstacles that it cannot pass.
+    pub obstacles: Vec<usize>,
+    /// Acceleration of gravity (m/s²).
+    pub gravity: [f64; 3],
+    /// The rest, as written.
+    pub file: FluidFile,
 }
 
 /// Where the surface of an obstacle comes from.

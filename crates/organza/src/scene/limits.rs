@@ -67,3 +67,7 @@ pub const MAX_DAMPING: f64 = 1e6;
 pub const MAX_PICTURE_PX: u32 = 16_384;
 /// Shots of a camera.
 pub const MAX_SHOTS: usize = 10_000;
+/// Particles of a fluid at the start: several gigabytes.
+pub const MAX_PARTICLES: f64 = 1e7;
+/// Density of a fluid (kg/m³).
+pub const MAX_FLUID_DENSITY_KG_PER_M3: f64 = 1e6;

@@ -8,9 +8,7 @@ use super::path::ValuePath;
 use super::typed::Complaint;
 
 /// Keys of the scene, and what they stand for.
-const SCENE: [(&str, &str); 5] = [
-    ("fluid", "fluids"),
-    ("fluids", "fluids"),
+const SCENE: [(&str, &str); 3] = [
     ("cameras", "several cameras"),
     ("restraint", "adaptively restrained dynamics"),
     ("morphs", "morphs"),

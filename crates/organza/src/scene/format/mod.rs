@@ -3,6 +3,7 @@
 
 mod character;
 mod cloth;
+mod fluid;
 mod handle;
 mod mesh;
 mod obstacle;
@@ -11,6 +12,7 @@ mod view;
 
 pub use character::*;
 pub use cloth::*;
+pub use fluid::*;
 pub use handle::*;
 pub use mesh::*;
 pub use obstacle::*;
@@ -60,8 +62,8 @@ pub struct SceneFile {
     /// Relative residual at which iterative linear solvers stop (1).
     #[serde(default = "default::linear_tolerance")]
     pub linear_tolerance: f64,
-    /// The pieces of cloth.
-    #[schemars(length(min = 1))]
+    /// The pieces of cloth; a scene has cloth or fluid.
+    #[serde(default)]
     pub cloths: Vec<ClothFile>,
     /// What holds or moves vertices of the cloths.
     #[serde(default)]
@@ -72,6 +74,9 @@ pub struct SceneFile {
     /// Characters in rows, with what they wear.
     #[serde(default)]
     pub crowd: Option<CrowdFile>,
+    /// Fluids, at most one for now. Cloth and fluid pass through each other.
+    #[serde(default)]
+    pub fluids: Vec<FluidFile>,
     /// How things touch. Absent means that cloth does not touch cloth, and that obstacles, if there
     /// are any, are touched with the default numbers.
     #[serde(default)]

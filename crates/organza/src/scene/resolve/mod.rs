@@ -3,6 +3,7 @@
 mod animated;
 mod cloth;
 mod crowd;
+mod fluid;
 mod handle;
 mod mesh;
 mod obstacle;
@@ -51,8 +52,8 @@ pub(super) fn resolve(
     }
     top.key("recording.checkpoint_every_frames")
         .at_least(file.recording.checkpoint_every_frames, 1);
-    if file.cloths.is_empty() && file.crowd.is_none() {
-        top.key("cloths").complain("a scene needs at least one cloth");
+    if file.cloths.is_empty() && file.crowd.is_none() && file.fluids.is_empty() {
+        top.key("cloths").complain("a scene needs at least one cloth or fluid");
     }
     for (key, n, limit) in [
         ("cloths", file.cloths.len(), limits::MAX_CLOTHS),
@@ -101,6 +102,9 @@ pub(super) fn resolve(
             cloths.as_mut()?.push(cloth);
         }
     }
+    let duration = f64::from(file.frames) / file.frames_per_second;
+    let fluids = top.key("fluids");
+    let fluid = fluid::resolve(file.fluids, obstacles.as_deref(), file.gravity, duration, &fluids);
     let up = super::data::up(file.gravity);
     let facts = view::Facts { up, frames_per_second: file.frames_per_second, frames: file.frames };
     let camera_path = view::path(file.camera.as_ref(), &file.shots, &facts, &top, context);
@@ -121,6 +125,7 @@ pub(super) fn resolve(
         cloths: cloths?,
         handles: handles?,
         obstacles: obstacles?,
+        fluid: fluid?,
         contact,
         camera: file.camera,
         camera_path,

@@ -1,0 +1,107 @@
+//! From the fluid of a scene to particles between walls.
+
+use super::policy::{self, Policy};
+use super::{Water, settings};
+use crate::obstacle::Obstacle;
+use crate::scene;
+use crate::scene::format::{Basin, Block, Face};
+use nalgebra::Vector3;
+use sph::{Bounds, Emitter, Fluid, FluidError, Open, Sink, Walls, scenes};
+
+/// How much denser than at rest a particle may be at the start (1). Where fluid stands in fluid or in
+/// a wall it would burst apart in the first step.
+const DENSEST: f64 = 1.25;
+
+/// Builds a fluid between its boxes and obstacles.
+///
+/// # Errors
+/// The key of the fluid that is wrong, and why.
+pub(crate) fn water(of: &scene::Fluid, obstacles: &[Obstacle]) -> Result<Water, (String, String)> {
+    let at = |key: &str| {
+        let key = key.to_owned();
+        move |error: FluidError| (key, error.to_string())
+    };
+    let spacing = of.file.spacing_m;
+    let mut walls = Walls::none();
+    for (k, basin) in of.file.boxes.iter().enumerate() {
+        let inside = settings::bounds(basin.min, basin.max);
+        walls.add_box(&inside, open(basin), spacing).map_err(at(&format!("boxes[{k}]")))?;
+    }
+    let mut around = Vec::new();
+    for obstacle in of.obstacles.iter().map(|&k| &obstacles[k]) {
+        let name = &obstacle.name;
+        let [start, end] = obstacle.times();
+        if obstacle.is_moving() || start > 0.0 || end.is_finite() {
+            let what = format!(
+                "the fluid meets obstacle `{name}`, which moves or comes and goes: not supported \
+                 yet; name in `obstacles` those that it meets"
+            );
+            return Err(("obstacles".into(), what));
+        }
+        let corners = obstacle.positions(0.0);
+        let added = walls.add_mesh(&corners, &obstacle.triangles, spacing);
+        added.map_err(|error| ("obstacles".into(), format!("obstacle `{name}`: {error}")))?;
+        around.extend(box_around(&corners));
+    }
+    let fluid_settings = settings::fluid(of, &around);
+    let (mut x, mut v) = (Vec::new(), Vec::new());
+    for block in &of.file.blocks {
+        x.extend(particles(block, spacing));
+        v.resize(x.len(), Vector3::from(block.velocity));
+    }
+    let mut fluid = Fluid::new(fluid_settings, walls, &x, &v).map_err(at("blocks"))?;
+    let densest = fluid.particles().max_by(|a, b| a.density.total_cmp(&b.density));
+    let limit = DENSEST * of.file.density_kg_per_m3;
+    if let Some(p) = densest.filter(|p| p.density > limit) {
+        let (x, density) = (p.position, p.density);
+        let what = format!(
+            "the particle at ({:.4}, {:.4}, {:.4}) m has a density of {density:.0} kg/m³ at the \
+             start: blocks reach into each other or into a wall",
+            x.x, x.y, x.z
+        );
+        return Err(("blocks".into(), what));
+    }
+    for (k, emitter) in of.file.emitters.iter().enumerate() {
+        let error = at(&format!("emitters[{k}]"));
+        let [position, direction] = [emitter.position, emitter.direction].map(Vector3::from);
+        let half_size = emitter.size_m.map(|size| 0.5 * size);
+        let end = emitter.end_s.unwrap_or(f64::INFINITY);
+        Emitter::new(position, direction, half_size, emitter.speed_m_per_s)
+            .and_then(|nozzle| fluid.add_emitter(nozzle.open(emitter.start_s, end)))
+            .map_err(error)?;
+    }
+    for sink in &of.file.sinks {
+        fluid.add_sink(Sink(settings::bounds(sink.min, sink.max)));
+    }
+    let (name, is_restrained) = (of.name.clone(), of.file.restraint.is_some());
+    let fluid = match &of.file.restraint {
+        None => fluid.released(),
+        Some(restraint) => {
+            let wrong = |what: String| ("restraint".to_owned(), what);
+            let policy: Policy = policy::of(restraint).map_err(|e| wrong(e.to_string()))?;
+            let settings = settings::restraint(restraint, fluid.settings());
+            fluid.restrained(policy, settings).map_err(|e| wrong(e.to_string()))?
+        }
+    };
+    Ok(Water { name, fluid, is_restrained })
+}
+
+/// Positions of the particles of a block (m).
+fn particles(block: &Block, spacing: f64) -> Vec<Vector3<f64>> {
+    let n = settings::lattice(block, spacing);
+    scenes::block(n, Vector3::from(block.min), spacing, u64::from(block.seed))
+}
+
+fn open(basin: &Basin) -> Open {
+    let has = |face| basin.open.contains(&face);
+    Open {
+        low: [Face::LowX, Face::LowY, Face::LowZ].map(has),
+        high: [Face::HighX, Face::HighY, Face::HighZ].map(has),
+    }
+}
+
+fn box_around(points: &[Vector3<f64>]) -> Option<Bounds> {
+    let first = points.first()?;
+    let start = Bounds::new(*first, *first);
+    Some(points.iter().fold(start, |b, x| Bounds::new(b.min.inf(x), b.max.sup(x))))
+}

@@ -1,0 +1,92 @@
+//! Fluid in a world: built from a scene, moved, saved.
+
+mod build;
+mod columns;
+pub(crate) mod policy;
+pub(crate) mod settings;
+
+pub(crate) use build::water;
+pub(crate) use columns::{columns, restore};
+pub use policy::Policy;
+
+use crate::report::{FluidSeconds, FluidSummary};
+use arps::Motion;
+use sph::{Fluid, FluidError, StepReport};
+
+/// The fluid of a world.
+#[derive(Clone, Debug)]
+pub struct Water {
+    /// Its name in the scene.
+    pub name: String,
+    /// Particles, walls, nozzles and sinks.
+    pub fluid: Fluid<Policy>,
+    /// Whether a policy restrains its particles.
+    pub is_restrained: bool,
+}
+
+/// A particle as recordings show it: 0 moves freely, 1 is in transition, 2 rests.
+fn state(motion: Motion) -> u8 {
+    match motion {
+        Motion::Full => 0,
+        Motion::Transition => 1,
+        Motion::Rest => 2,
+    }
+}
+
+impl Water {
+    /// Lets time (s) go by.
+    ///
+    /// # Errors
+    /// As for [`Fluid::advance`].
+    pub(crate) fn advance(&mut self, duration: f64) -> Result<StepReport, FluidError> {
+        self.fluid.advance(duration)
+    }
+
+    /// The particles as recordings hold them, by ascending number. `None` for a particle whose number
+    /// a recording cannot hold.
+    pub fn particles(&self) -> Option<Vec<io_mcap::Particle>> {
+        let particles = self.fluid.particles().zip(self.fluid.motions());
+        let recorded = particles.map(|(p, motion)| {
+            Some(io_mcap::Particle {
+                id: u32::try_from(p.id).ok()?,
+                position: p.position.into(),
+                velocity: p.velocity.map(|v| v as f32).into(),
+                speed: p.effective_velocity.norm() as f32,
+                density: p.density as f32,
+                state: state(motion),
+            })
+        });
+        let mut recorded = recorded.collect::<Option<Vec<_>>>()?;
+        recorded.sort_unstable_by_key(|particle| particle.id);
+        Some(recorded)
+    }
+
+    /// What the report of a frame says of it, in which `done` was done in `duration` (s).
+    pub(crate) fn summary(&self, done: &StepReport, duration: f64) -> FluidSummary {
+        let mut n = [0; 3];
+        self.fluid.motions().for_each(|motion| n[usize::from(state(motion))] += 1);
+        let [active, transition, restrained] = n;
+        let energy = self.fluid.energy();
+        let sph::Seconds { motion, neighbours, density, force, changes } = done.seconds;
+        FluidSummary {
+            particles: self.fluid.len(),
+            active,
+            transition,
+            restrained,
+            steps: done.steps,
+            step_s: duration / done.steps.max(1) as f64,
+            moved: done.moved,
+            sweeps: done.sweeps,
+            density_pairs: done.density_pairs,
+            force_pairs: done.force_pairs,
+            listings: done.listings,
+            emitted: done.emitted,
+            drained: done.drained,
+            density_max_kg_per_m3: self.fluid.particles().map(|p| p.density).fold(0.0, f64::max),
+            kinetic_energy_j: energy.kinetic,
+            internal_energy_j: energy.internal,
+            potential_energy_j: energy.potential,
+            seconds: FluidSeconds { motion, neighbours, density, force, changes },
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Checks and resolves fluids.
+
+use super::super::check::At;
+use super::super::data::{Fluid, Obstacle};
+use super::super::format::{
+    Basin, Block, EmitterFile, FluidFile, FluidRestraint, Region, RestraintLaw, RestraintPolicy,
+};
+use super::super::issue::IssueKind;
+use super::super::limits::{
+    MAX_FACTOR, MAX_FLUID_DENSITY_KG_PER_M3, MAX_PARTICLES, MAX_SPEED_M_PER_S, MAX_STEPS,
+    MAX_TIME_S,
+};
+use super::super::typed::suggestion;
+use super::handle::check_times;
+use super::{beyond, names};
+use crate::fluid::{policy, settings};
+use nalgebra::Vector3;
+
+/// Numbers of particles in a recording.
+const MAX_NAMES: f64 = u32::MAX as f64;
+
+/// Checks the fluids of a scene, which runs for `duration` (s) under `gravity` (m/s²). For now there
+/// is at most one.
+pub(super) fn resolve(
+    fluids: Vec<FluidFile>,
+    obstacles: Option<&[Obstacle]>,
+    gravity: [f64; 3],
+    duration: f64,
+    at: &At<'_>,
+) -> Option<Option<Fluid>> {
+    if fluids.len() > 1 {
+        at.index(1).report(IssueKind::Unsupported, "several fluids, which do not meet each other");
+    }
+    let names = names(&fluids, |fluid| fluid.name.clone(), "fluid", at);
+    let Some((file, name)) = fluids.into_iter().zip(names).next() else { return Some(None) };
+    let at = at.index(0);
+    check_numbers(&file, &at);
+    check_places(&file, duration, &at);
+    if let Some(restraint) = &file.restraint {
+        check_restraint(restraint, &at.key("restraint"));
+    }
+    let obstacles = match (&file.obstacles, obstacles) {
+        (_, None) => None,
+        (None, Some(all)) => Some((0..all.len()).collect()),
+        (Some(wanted), Some(all)) => find(wanted, all, &at.key("obstacles")),
+    };
+    let fluid = Fluid { name, obstacles: obstacles?, gravity, file };
+    check_sound(&fluid, duration, &at);
+    Some(Some(fluid))
+}
+
+/// The obstacles with these names.
+fn find(wanted: &[String], all: &[Obstacle], at: &At<'_>) -> Option<Vec<usize>> {
+    let find_one = |(i, name): (usize, &String)| {
+        let found = all.iter().position(|obstacle| obstacle.name == *name);
+        if found.is_none() {
+            let known: Vec<&str> = all.iter().map(|obstacle| obstacle.name.as_str()).collect();
+            let hint = suggestion(name, &known);
+            at.index(i).complain(format!("there is no obstacle `{name}`{hint}"));
+        }
+        found
+    };
+    wanted.iter().enumerate().map(find_one).collect()
+}
+
+fn check_numbers(file: &FluidFile, at: &At<'_>) {
+    at.key("spacing_m").size(file.spacing_m);
+    let density = at.key("density_kg_per_m3");
+    density.positive(file.density_kg_per_m3, MAX_FLUID_DENSITY_KG_PER_M3, "kg/m³");
+    if let Some(speed) = file.sound_speed_m_per_s {
+        at.key("sound_speed_m_per_s").positive(speed, 100.0 * MAX_SPEED_M_PER_S, "m/s");
+    }
+    at.key("viscosity").not_negative(file.viscosity, MAX_FACTOR, "");
+    at.key("wall_viscosity").not_negative(file.wall_viscosity, MAX_FACTOR, "");
+    at.key("courant").positive(file.courant, 1.0, "");
+    at.key("skin").not_negative(file.skin, 10.0, "");
+}
+
+fn check_places(file: &FluidFile, duration: f64, at: &At<'_>) {
+    if let Some(domain) = &file.domain {
+        check_region(domain, &at.key("domain"));
+    }
+    for (i, sink) in file.sinks.iter().enumerate() {
+        check_region(sink, &at.key("sinks").index(i));
+    }
+    for (i, Basin { min, max, .. }) in file.boxes.iter().enumerate() {
+        check_region(&Region { min: *min, max: *max }, &at.key("boxes").index(i));
+    }
+    if file.blocks.is_empty() && file.emitters.is_empty() {
+        at.complain("has no fluid: give `blocks` or `emitters`");
+    }
+    let mut n = 0.0;
+    for (i, block) in file.blocks.iter().enumerate() {
+        let at = at.key("blocks").index(i);
+        n += check_block(block, file.spacing_m, &at);
+    }
+    if n > MAX_PARTICLES {
+        at.key("blocks").complain(beyond(n, MAX_PARTICLES, "particles"));
+    }
+    for (i, emitter) in file.emitters.iter().enumerate() {
+        let at = at.key("emitters").index(i);
+        n += check_emitter(emitter, file.spacing_m, duration, &at);
+    }
+    if n > MAX_NAMES && !file.emitters.is_empty() {
+        at.key("emitters").complain(beyond(n, MAX_NAMES, "particles over all the time"));
+    }
+}
+
+fn check_region(region: &Region, at: &At<'_>) {
+    at.key("min").coordinates(&region.min);
+    at.key("max").coordinates(&region.max);
+    for k in 0..3 {
+        if region.min[k] >= region.max[k] {
+            let (min, max) = (region.min[k], region.max[k]);
+            at.key("max").index(k).complain(format!("{max} m is not above the smallest, {min} m"));
+        }
+    }
+}
+
+/// Returns the number of particles.
+fn check_block(block: &Block, spacing: f64, at: &At<'_>) -> f64 {
+    check_region(&Region { min: block.min, max: block.max }, at);
+    at.key("velocity").vector(&block.velocity, MAX_SPEED_M_PER_S, "m/s");
+    let n: f64 = settings::lattice(block, spacing).iter().map(|n| *n as f64).product();
+    if n == 0.0 && spacing > 0.0 && (0..3).all(|k| block.min[k] < block.max[k]) {
+        at.complain(format!("is thinner than one particle of {spacing} m"));
+    }
+    n
+}
+
+/// Returns the number of particles over the duration (s).
+fn check_emitter(emitter: &EmitterFile, spacing: f64, duration: f64, at: &At<'_>) -> f64 {
+    at.key("position").coordinates(&emitter.position);
+    at.key("direction").vector(&emitter.direction, MAX_FACTOR, "");
+    if Vector3::from(emitter.direction).norm() == 0.0 {
+        at.key("direction").complain("has no length");
+    }
+    for (i, &size) in emitter.size_m.iter().enumerate() {
+        at.key("size_m").index(i).size(size);
+    }
+    let speed = at.key("speed_m_per_s");
+    speed.positive(emitter.speed_m_per_s, MAX_SPEED_M_PER_S, "m/s");
+    check_times(emitter.start_s, emitter.end_s, at);
+    let open = emitter.end_s.unwrap_or(f64::INFINITY).min(duration) - emitter.start_s;
+    let across: f64 = emitter.size_m.iter().map(|size| (size / spacing).max(1.0)).product();
+    across * (emitter.speed_m_per_s * open / spacing).max(0.0)
+}
+
+fn check_sound(fluid: &Fluid, duration: f64, at: &At<'_>) {
+    let speed = settings::sound_speed(fluid);
+    if speed <= 0.0 {
+        let what = "is needed where nothing falls or moves at the start";
+        at.key("sound_speed_m_per_s").complain(what);
+        return;
+    }
+    // The least that it takes: the smoothing length is a little more than the spacing.
+    let steps = duration * speed / (fluid.file.courant * 2.0 * fluid.file.spacing_m);
+    if steps > MAX_STEPS {
+        at.key("spacing_m").complain(beyond(steps, MAX_STEPS, "steps"));
+    }
+}
+
+fn check_restraint(restraint: &FluidRestraint, at: &At<'_>) {
+    let FluidRestraint { policy: by, law, .. } = *restraint;
+    let given = [
+        ("restrain_below_m_per_s", restraint.restrain_below_m_per_s, RestraintPolicy::Speed),
+        ("restore_above_m_per_s", restraint.restore_above_m_per_s, RestraintPolicy::Speed),
+        ("restrain_below_j", restraint.restrain_below_j, RestraintPolicy::Kinetic),
+        ("restore_above_j", restraint.restore_above_j, RestraintPolicy::Kinetic),
+        ("error_m", restraint.error_m, RestraintPolicy::Automatic),
+        ("duration_s", restraint.duration_s, RestraintPolicy::Automatic),
+    ];
+    let mut complete = true;
+    for (key, value, of) in given {
+        match value {
+            Some(value) if of == by => at.key(key).not_negative(value, MAX_FACTOR, ""),
+            Some(_) => at.key(key).complain("belongs to another `policy`"),
+            None if of == by => {
+                complete = false;
+                at.complain(format!("key `{key}` is missing"));
+            }
+            None => {}
+        }
+    }
+    if by == RestraintPolicy::Automatic && law != RestraintLaw::Ramp {
+        at.key("law").complain("the policy `automatic` has the law `ramp`");
+    }
+    if complete && let Err(error) = policy::of(restraint) {
+        at.complain(error.to_string());
+    }
+    if let Some(tau) = restraint.bleeding_s {
+        at.key("bleeding_s").positive(tau, MAX_TIME_S, "s");
+    }
+    let slow = restraint.inactivity_m_per_s;
+    at.key("inactivity_m_per_s").not_negative(slow, MAX_SPEED_M_PER_S, "m/s");
+    if let Some(tolerance) = restraint.pressure_tolerance_pa {
+        at.key("pressure_tolerance_pa").not_negative(tolerance, 1e12, "Pa");
+    }
+    at.key("sweep_above").not_negative(restraint.sweep_above, 1.0, "");
+}
