@@ -154,7 +154,7 @@ fn pieces(inside: &[bool; 8]) -> Option<[Option<usize>; 12]> {
 }
 
 /// Moves vertices along the surface towards the middle of their neighbours, and back onto it.
-fn even_out(positions: &mut Vec<World3>, quads: &[[u32; 4]]) {
+fn even_out(positions: &mut [World3], quads: &[[u32; 4]]) {
     for _ in 0..ROUNDS {
         let mut sums = vec![(World3::zeros(), 0.0); positions.len()];
         for quad in quads {
