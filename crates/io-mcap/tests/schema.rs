@@ -152,7 +152,7 @@ fn every_written_field_is_described() {
             *fields.entry(schema.name.clone()).or_insert(0) += n;
         }
     }
-    assert_eq!(fields.len(), 6, "{fields:?}");
+    assert_eq!(fields.len(), 7, "{fields:?}");
     assert!(fields.values().all(|&n| n > 0));
     assert!(fields["foxglove.SceneUpdate"] > 1000);
 }
