@@ -47,7 +47,9 @@ pub fn draw_frame(
     options: &PictureOptions,
     style: &Style,
 ) -> Result<Image, RenderError> {
-    let paints: Vec<_> = frame.garments.iter().map(|g| options.colouring.of(g)).collect();
+    let states = |k: usize| frame.report.get("restraint")?.get("states")?.get(k)?.as_str();
+    let garments = frame.garments.iter().enumerate();
+    let paints: Vec<_> = garments.map(|(k, g)| options.colouring.of(g, states(k))).collect();
     let garments = frame.garments.iter().zip(&paints).map(|(garment, paint)| Surface {
         points: &garment.points,
         triangles: &garment.triangles,

@@ -97,6 +97,39 @@ impl ViewSummary {
     }
 }
 
+/// What restraint did in a frame, and who rests at its end.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RestraintSummary {
+    /// Vertices with full dynamics.
+    pub active: usize,
+    /// Vertices that move, but slower than their momentum.
+    pub transition: usize,
+    /// Vertices that stand still.
+    pub resting: usize,
+    /// Implicit stages.
+    pub stages: usize,
+    /// Stages slept through: nothing was evaluated, assembled or solved.
+    pub stages_slept: usize,
+    /// Linear systems of the others.
+    pub solves: usize,
+    /// Vertices in these, summed.
+    pub unknowns: usize,
+    /// Vertices on which no force was evaluated, summed over stages.
+    pub untouched: usize,
+    /// Vertices that woke because their momentum or contact said so.
+    pub woken: usize,
+    /// Times that forces were built for a part of the cloth.
+    pub parts_built: usize,
+    /// Stages made again with a larger part.
+    pub stages_redone: usize,
+    /// Momenta at rest that were cut, in stages that did not converge.
+    pub momenta_cut: usize,
+    /// What the vertices of every garment do in their order, each letter after how often it follows
+    /// itself: `a`ctive, in `t`ransition, `r`esting, as in `12r3t`.
+    pub states: Vec<String>,
+}
+
 /// Report of one frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameReport {
@@ -147,7 +180,10 @@ pub struct FrameReport {
     /// What the camera saw, if mesh sizes depend on it.
     #[serde(default)]
     pub view: Option<ViewSummary>,
-    /// Kinetic energy (J).
+    /// Who rests, if anything may.
+    #[serde(default)]
+    pub restraint: Option<RestraintSummary>,
+    /// Kinetic energy, the restrained one where anything may rest (J).
     pub kinetic_energy_j: f64,
     /// Stages that the scene does not need, and why.
     pub skipped: Vec<String>,
@@ -174,6 +210,7 @@ impl FrameReport {
         stretch: StretchRange,
         seconds: Seconds,
     ) -> FrameReport {
+        let (kinetic_energy_j, restraint) = world.kinetic_energy(&solve.rest);
         FrameReport {
             frame: world.frame,
             time_s: world.time(),
@@ -203,7 +240,8 @@ impl FrameReport {
                 limit_reached: r.limit_reached(),
             }),
             view: remeshed.and_then(|r| r.view),
-            kinetic_energy_j: world.cloth.kinetic_energy(),
+            restraint,
+            kinetic_energy_j,
             skipped: world.skipped(),
             seconds,
         }

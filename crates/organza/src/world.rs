@@ -1,6 +1,7 @@
 //! The world: state and policies of a running scene, and the step.
 
 mod bodies;
+mod rest;
 mod tangled;
 #[cfg(test)]
 mod tests;
@@ -10,7 +11,7 @@ use crate::contact::{ContactSettings, Crossings, SurfaceContact};
 use crate::handles::{Handles, by_name};
 use crate::obstacle::Obstacle;
 use crate::remeshing::Remeshing;
-use crate::report::{FrameReport, Seconds, StretchRange};
+use crate::report::{FrameReport, RestraintSummary, Seconds, StretchRange};
 use crate::scene::format::{Integrator, LinearSolver as Method};
 use crate::scene::{Dialect, Loaded};
 use bodies::{Bodies, appearing_in_cloth};
@@ -22,6 +23,7 @@ use cloth_dynamics::{
 use collision::SurfaceError;
 use mesh_core::{ClothState, World3};
 use remesh::SizingField;
+use rest::Restraints;
 use std::sync::Arc;
 use std::time::Instant;
 use tangled::Tangled;
@@ -92,6 +94,10 @@ pub struct World {
     newton: NewtonSettings,
     solver: Box<dyn LinearSolver>,
     remeshing: Option<Remeshing>,
+    /// Who may rest, if anybody may.
+    restraints: Option<Restraints>,
+    /// Of the last frame; the same as long as all sleeps.
+    last_stretch: Option<StretchRange>,
     /// What is worked out once per mesh; absent after the mesh has changed.
     prepared: Option<Prepared>,
 }
@@ -180,6 +186,8 @@ impl World {
                 tolerance: scene.newton.tolerance,
             },
             solver: solver.build(settings),
+            restraints: Restraints::new(scene),
+            last_stretch: None,
             prepared: None,
         };
         world.note_tangles();
@@ -238,10 +246,21 @@ impl World {
             let time = self.time() + f64::from(k) * h;
             self.step(Step { time, h }, frame, 0, &mut solve, &mut retries, &mut seconds)?;
         }
-        let stretch = StretchRange::of(&self.cloth);
+        // Where all has slept, nothing has changed that could be measured or remeshed.
+        let slept = solve.rest.slept > 0 && solve.rest.slept == solve.stages;
+        let looks = self.remeshing.as_ref().is_some_and(Remeshing::looks);
+        let end = frame as f64 * self.frame_s;
+        if let Some(prepared) = &self.prepared {
+            prepared.system.settle(&mut self.cloth, end);
+        }
+        let before = self.last_stretch.filter(|_| slept);
+        let stretch = before.unwrap_or_else(|| StretchRange::of(&self.cloth));
+        self.last_stretch = Some(stretch);
         let mut remeshed = None;
         let mut crossings = None;
-        if let Some(remeshing) = &self.remeshing {
+        if slept && !looks {
+            // What passes through something is led out of it and does not sleep.
+        } else if let Some(remeshing) = &self.remeshing {
             let (before, next) = (self.cloth.mesh.uids().to_vec(), self.cloth.mesh.next_uid());
             let keep = self.handles.names();
             let error = |source| StepError::Remesh { frame, source };
@@ -359,7 +378,9 @@ impl World {
         let end = step.time + step.h;
         let changed = self.bodies.update(&self.obstacles, end);
         if changed.map_err(|e| StepError::TooLarge { frame, message: e.to_string() })? {
-            self.prepared = None;
+            if let Some(prepared) = self.prepared.take() {
+                prepared.system.settle(&mut self.cloth, step.time);
+            }
             let (times, time) = ([step.time, end], step.time);
             let found = appearing_in_cloth(&self.obstacles, &self.cloth, settings, times);
             if let Some((obstacle, crossings)) = found {
@@ -369,6 +390,18 @@ impl World {
             }
         }
         Ok(())
+    }
+
+    /// Kinetic energy (J), the restrained one where anything may rest, and then who does.
+    pub(crate) fn kinetic_energy(
+        &self,
+        rest: &cloth_dynamics::RestReport,
+    ) -> (f64, Option<RestraintSummary>) {
+        let Some(restraints) = &self.restraints else { return (self.cloth.kinetic_energy(), None) };
+        let policy = restraints.policy(&self.cloth, &self.garments);
+        let (energy, summary) =
+            rest::summary(&policy, &self.cloth, &self.garments, self.time(), rest);
+        (energy, Some(summary))
     }
 
     /// What passes through what at the end of a frame; `None` if nothing does, or contact is off.
@@ -396,6 +429,9 @@ impl World {
                     contact
                 };
                 system.set_contact(Box::new(contact));
+            }
+            if let Some(restraints) = &self.restraints {
+                system.set_restraint(restraints.policy(&self.cloth, &self.garments));
             }
             self.prepared = Some(Prepared { system, names: by_name(&self.cloth.mesh) });
         }
@@ -431,6 +467,7 @@ impl World {
         note(self.fabrics.iter().all(|f| f.bending.is_none()), "bending: no fabric resists it");
         note(self.handles.list().is_empty(), "handles: none in the scene");
         note(self.contact.is_none(), "contact: none in the scene");
+        note(self.restraints.is_none(), "restraint: all of the cloth always moves");
         let is_free = self.contact.is_some() && !self.tangled.was_at_work;
         note(is_free, "untangling: nothing passes through anything");
         skipped

@@ -230,14 +230,14 @@ fn complaints_about_set_values_name_the_argument() {
 #[test]
 fn what_is_not_supported_is_an_error_or_a_warning() {
     let text = with(
-        "cameras: [{}], restraint: true, fluid: null, fluids: false,",
+        "cameras: [{}], morphs: true, fluid: null, fluids: false,",
         "plasticity: {yield: 1}",
     );
     let errors = errors_of(text.as_bytes(), &[]);
     assert_eq!(
         errors.to_string(),
         "s.json5:1:13: cameras: not supported yet: several cameras\n\
-         s.json5:1:28: restraint: not supported yet: adaptively restrained dynamics\n\
+         s.json5:1:28: morphs: not supported yet: morphs\n\
          s.json5:2:40: cloths[0].plasticity: not supported yet: plastic deformation\n\
          use --allow-unsupported to run without what is not supported yet"
     );

@@ -55,9 +55,9 @@ const INNER: f64 = 0.2;
 /// Share of the error of an iteration to which it is solved, if that is more: the next iteration has
 /// other forces.
 const REDUCTION: f64 = 0.1;
-/// Share of the greatest speed by which restrained momenta over mass may be off, as long as that is less
-/// than a share of what may rest.
-const COARSE: f64 = 0.02;
+/// Share of the greatest speed by which momenta over mass may be off at rest and in transition, as long
+/// as that is less than a share of what may rest.
+const COARSE: [f64; 2] = [0.02, 0.1];
 const ROUGH: f64 = 0.3;
 /// The most linear systems for one direction; what is left then is for the next.
 const MAX_ROUNDS: usize = 8;
@@ -123,11 +123,11 @@ impl Newton<'_> {
             if held.p_r() == 0.0 || mass[i] * from[i].norm() >= h * held.p_f() {
                 return most;
             }
-            // The momentum of what moves follows from its velocity; that of what rests is all there is.
-            // Between things that move fast it may be less exact.
-            let coarse = COARSE * fastest * held.mass() / held.p_r();
-            let share = if from[i] == zero { coarse.clamp(restrained.fine, ROUGH) } else { ROUGH };
-            most.min(share * held.p_r())
+            // Between things that move fast momenta may be less exact, more so those that follow from a
+            // velocity.
+            let coarse = if from[i] == zero { COARSE[0] } else { COARSE[1] };
+            let share = coarse * fastest * held.mass() / held.p_r();
+            most.min(share.clamp(restrained.fine, ROUGH) * held.p_r())
         };
         let mut tolerance: Vec<f64> = (0..n).map(tolerance).collect();
         let error = |i: usize| restrained.conjugates[i].error(&drive[i], &from[i], h) / tolerance[i];

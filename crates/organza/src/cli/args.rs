@@ -236,6 +236,8 @@ pub(crate) enum Color {
     Plain,
     /// Larger principal stretch: violet 0.95, green 1, yellow 1.05
     Stretch,
+    /// Who rests: blue moves freely, green in transition, red stands still
+    Restraint,
 }
 
 fn size(text: &str) -> Result<Size, String> {

@@ -18,6 +18,7 @@ pub(crate) fn run(args: &Render) -> Result<(), Failure> {
         colouring: match args.color {
             Color::Plain => Colouring::Plain,
             Color::Stretch => Colouring::Stretch,
+            Color::Restraint => Colouring::Restraint,
         },
     };
     let range = files.frames.unwrap_or_default();

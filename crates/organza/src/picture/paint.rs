@@ -21,7 +21,14 @@ pub enum Colouring {
     /// The larger principal stretch of every triangle, from dark violet at [`STRETCH_RANGE`]'s start
     /// over green at rest to yellow at its end.
     Stretch,
+    /// Who rests: triangles with a vertex of full dynamics blue, others with one in transition green,
+    /// those that stand still red; grey where nothing is restrained.
+    Restraint,
 }
+
+/// Colours of rest, of transition and of full dynamics, and where nothing is known.
+const MOTIONS: [Rgb; 3] = [[190, 60, 55], [95, 160, 80], [70, 110, 190]];
+const UNKNOWN: Rgb = [150, 150, 150];
 
 /// The colours of one garment.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,8 +38,19 @@ pub(super) enum OwnedPaint {
 }
 
 impl Colouring {
-    pub(super) fn of(self, garment: &OwnedGarment) -> OwnedPaint {
+    /// `states` is what the vertices do, see
+    /// [`RestraintSummary::states`](crate::report::RestraintSummary::states).
+    pub(super) fn of(self, garment: &OwnedGarment, states: Option<&str>) -> OwnedPaint {
         match self {
+            Colouring::Restraint => {
+                let motions = states.map(motions).unwrap_or_default();
+                let most = |t: &[u32; 3]| {
+                    let each = t.iter().map(|&i| motions.get(i as usize).copied());
+                    each.collect::<Option<Vec<_>>>().and_then(|all| all.into_iter().max())
+                };
+                let colour = |t: &[u32; 3]| most(t).map_or(UNKNOWN, |motion| MOTIONS[motion]);
+                OwnedPaint::Triangles(garment.triangles.iter().map(colour).collect())
+            }
             Colouring::Plain => {
                 let [r, g, b, _] = garment.color;
                 // A float cast saturates: no colour can leave its range.
@@ -54,6 +72,25 @@ impl OwnedPaint {
             OwnedPaint::Triangles(colours) => Paint::Triangles(colours),
         }
     }
+}
+
+/// What every vertex does, as a place in [`MOTIONS`]; ends where the text is not understood.
+fn motions(states: &str) -> Vec<usize> {
+    const MOST: usize = 1 << 31;
+    let mut all = Vec::new();
+    let mut rest = states;
+    while let Some(end) = rest.find(|c: char| !c.is_ascii_digit()) {
+        let Some(motion) = rest[end..].chars().next().and_then(|letter| "rta".find(letter)) else {
+            break;
+        };
+        let Ok(count) = rest[..end].parse::<usize>() else { break };
+        if count > MOST - all.len().min(MOST) {
+            break;
+        }
+        all.extend(std::iter::repeat_n(motion, count));
+        rest = &rest[end + 1..];
+    }
+    all
 }
 
 /// The larger principal stretch of every triangle (1); not a number where the material triangle has
@@ -86,11 +123,11 @@ mod tests {
         let stretch: Vec<f64> = stretches(&garment).collect();
         assert!((stretch[0] - 1.1).abs() < 1e-15, "{stretch:?}");
         assert_eq!(
-            Colouring::Stretch.of(&garment),
+            Colouring::Stretch.of(&garment, None),
             OwnedPaint::Triangles(vec![VIRIDIS.colour(1.0)])
         );
         garment.material[0][2] = [2.0, 0.0];
         assert!(stretches(&garment).all(f64::is_nan));
-        assert_eq!(Colouring::Stretch.of(&garment), OwnedPaint::Triangles(vec![VIRIDIS.undefined]));
+        assert_eq!(Colouring::Stretch.of(&garment, None), OwnedPaint::Triangles(vec![VIRIDIS.undefined]));
     }
 }

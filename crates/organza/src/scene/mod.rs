@@ -31,7 +31,7 @@ pub(crate) mod text;
 pub(crate) mod typed;
 pub(crate) mod unsupported;
 
-pub use data::{Cloth, Handle, MeshSource, Obstacle, ObstacleSource, Scene, Sequence};
+pub use data::{Cloth, Handle, MeshSource, Obstacle, ObstacleSource, Scene, Sequence, Thresholds};
 pub(crate) use files::Files;
 pub use files::{Dialect, FileError, FileRequest, Resolver, Source, from_disk, from_sources};
 pub use issue::{Issue, IssueKind, Origin, Position, SceneErrors};

@@ -5,6 +5,7 @@ mod cloth;
 mod handle;
 mod mesh;
 mod obstacle;
+mod restraint;
 mod solver;
 mod view;
 
@@ -12,6 +13,7 @@ pub use cloth::*;
 pub use handle::*;
 pub use mesh::*;
 pub use obstacle::*;
+pub use restraint::*;
 pub use solver::*;
 pub use view::*;
 
@@ -80,6 +82,9 @@ pub struct SceneFile {
     /// Mesh sizes by what the camera sees; absent means that it does not matter what it sees.
     #[serde(default)]
     pub view: Option<ViewFile>,
+    /// Lets cloth rest that hardly moves; absent means that all of it always moves.
+    #[serde(default)]
+    pub restraint: Option<RestraintFile>,
     /// What is recorded besides the frames.
     #[serde(default)]
     pub recording: Recording,
@@ -134,6 +139,9 @@ impl Default for Recording {
     }
 }
 
+/// See [`RestraintFile::bleeding_s`], where the scene does not say (s).
+pub(crate) const BLEEDING_S: f64 = 0.5;
+
 /// Values of keys that a scene leaves out.
 mod default {
     pub(super) fn frames_per_second() -> f64 {
@@ -159,6 +167,10 @@ mod default {
     }
     pub(super) fn self_contact() -> bool {
         true
+    }
+    #[expect(clippy::unnecessary_wraps, reason = "the key may be null")]
+    pub(super) fn bleeding_s() -> Option<f64> {
+        Some(super::BLEEDING_S)
     }
     pub(super) fn vertical_fov_deg() -> f64 {
         40.0

@@ -5,12 +5,13 @@ mod cloth;
 mod handle;
 mod mesh;
 mod obstacle;
+mod restraint;
 mod view;
 
 use super::check::{At, Complaints, beyond};
 use super::data::Scene;
 use super::files::Files;
-use super::format::{ClothFile, SceneFile, Wind};
+use super::format::{BLEEDING_S, ClothFile, SceneFile, Wind};
 use super::issue::{Issue, IssueKind};
 use super::limits;
 
@@ -63,6 +64,7 @@ pub(super) fn resolve(
     let given = |cloth: &ClothFile| cloth.name.clone();
     let names = names(&file.cloths, given, "cloth", &top.key("cloths"));
     let handles = handle::resolve(file.handles, &names, &top.key("handles"));
+    let duration = f64::from(file.frames) / file.frames_per_second;
     let cloths: Option<Vec<_>> = {
         let resolved: Vec<_> = file
             .cloths
@@ -70,7 +72,7 @@ pub(super) fn resolve(
             .zip(names)
             .enumerate()
             .map(|(i, (cloth, name))| {
-                cloth::resolve(cloth, name, &top.key("cloths").index(i), context)
+                cloth::resolve(cloth, name, duration, &top.key("cloths").index(i), context)
             })
             .collect();
         resolved.into_iter().collect()
@@ -80,6 +82,11 @@ pub(super) fn resolve(
     let up = super::data::up(file.gravity);
     let camera_path = view::path(file.camera.as_ref(), &file.shots, up, &top);
     let view = file.view.and_then(|view| view::settings(view, file.camera.is_some(), &top));
+    let restraint = file.restraint.and_then(|wish| {
+        let at = top.key("restraint");
+        restraint::check_bleeding(wish.bleeding_s, &at);
+        restraint::thresholds(wish.thresholds, wish.law, duration, &at)
+    });
     Some(Scene {
         name: file.name.unwrap_or_else(|| default_name.to_owned()),
         frames: file.frames,
@@ -98,6 +105,8 @@ pub(super) fn resolve(
         camera: file.camera,
         camera_path,
         view,
+        restraint: restraint.unwrap_or_default(),
+        bleeding_s: file.restraint.map_or(Some(BLEEDING_S), |wish| wish.bleeding_s),
         recording: file.recording,
     })
 }
