@@ -43,6 +43,7 @@ impl Colouring {
     pub(super) fn of(self, garment: &OwnedGarment, states: Option<&str>) -> OwnedPaint {
         match self {
             Colouring::Restraint => {
+                let motions = |text| motions(text, garment.points.len());
                 let motions = states.map(motions).unwrap_or_default();
                 let most = |t: &[u32; 3]| {
                     let each = t.iter().map(|&i| motions.get(i as usize).copied());
@@ -75,8 +76,7 @@ impl OwnedPaint {
 }
 
 /// What every vertex does, as a place in [`MOTIONS`]; ends where the text is not understood.
-fn motions(states: &str) -> Vec<usize> {
-    const MOST: usize = 1 << 31;
+fn motions(states: &str, n_vertices: usize) -> Vec<usize> {
     let mut all = Vec::new();
     let mut rest = states;
     while let Some(end) = rest.find(|c: char| !c.is_ascii_digit()) {
@@ -84,7 +84,7 @@ fn motions(states: &str) -> Vec<usize> {
             break;
         };
         let Ok(count) = rest[..end].parse::<usize>() else { break };
-        if count > MOST - all.len().min(MOST) {
+        if count > n_vertices - all.len() {
             break;
         }
         all.extend(std::iter::repeat_n(motion, count));
