@@ -213,6 +213,12 @@ impl System {
         self.forces.iter().map(|f| f.energy(x)).sum::<f64>() + self.springs.energy(x)
     }
 
+    /// Potential energy (J) of cloth that stands still at `x`, without contact: nothing is dissipated.
+    pub fn energy_at_rest(&mut self, x: &[World3]) -> f64 {
+        self.begin(Stage { x_t0: x, base: x, h: 1.0 });
+        self.energy(x)
+    }
+
     /// Gradient of [`System::energy`] (N).
     pub fn gradient(&self, x: &[World3]) -> Vec<World3> {
         let mut gradient = vec![World3::zeros(); x.len()];

@@ -98,7 +98,7 @@ impl ViewSummary {
 }
 
 /// What restraint did in a frame, and who rests at its end.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct RestraintSummary {
     /// Vertices with full dynamics.
@@ -123,6 +123,9 @@ pub struct RestraintSummary {
     pub parts_built: usize,
     /// Stages made again with a larger part.
     pub stages_redone: usize,
+    /// Restrained kinetic energy and potential energy, that of contact left out, at the end of the steps
+    /// (J).
+    pub energy_j: f64,
     /// Momenta at rest that were cut, in stages that did not converge.
     pub momenta_cut: usize,
     /// What the vertices of every garment do in their order, each letter after how often it follows

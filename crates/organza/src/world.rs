@@ -97,7 +97,7 @@ pub struct World {
     /// Who may rest, if anybody may.
     restraints: Option<Restraints>,
     /// Of the last frame; the same as long as all sleeps.
-    last_stretch: Option<StretchRange>,
+    measured: Option<Measured>,
     /// What is worked out once per mesh; absent after the mesh has changed.
     prepared: Option<Prepared>,
 }
@@ -114,6 +114,14 @@ impl std::fmt::Debug for World {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("World").field("frame", &self.frame).finish_non_exhaustive()
     }
+}
+
+/// What is measured at the end of the steps of a frame.
+#[derive(Clone, Copy)]
+struct Measured {
+    stretch: StretchRange,
+    /// Restrained energy (J), if anything may rest.
+    energy: f64,
 }
 
 /// The scene has grown beyond what matrices or collision trees can hold.
@@ -187,7 +195,7 @@ impl World {
             },
             solver: solver.build(settings),
             restraints: Restraints::new(scene),
-            last_stretch: None,
+            measured: None,
             prepared: None,
         };
         world.note_tangles();
@@ -253,9 +261,11 @@ impl World {
         if let Some(prepared) = &self.prepared {
             prepared.system.settle(&mut self.cloth, end);
         }
-        let before = self.last_stretch.filter(|_| slept);
-        let stretch = before.unwrap_or_else(|| StretchRange::of(&self.cloth));
-        self.last_stretch = Some(stretch);
+        let measured = match self.measured.filter(|_| slept) {
+            Some(measured) => measured,
+            None => self.measure(end),
+        };
+        self.measured = Some(measured);
         let mut remeshed = None;
         let mut crossings = None;
         if slept && !looks {
@@ -311,8 +321,11 @@ impl World {
         let (substeps, remeshed) = (self.substeps, remeshed.as_ref());
         let crossings = self.contact.map(|_| crossings.map_or(0, |crossings| crossings.n));
         let mut report = FrameReport::new(
-            self, substeps, retries, &solve, remeshed, crossings, stretch, seconds,
+            self, substeps, retries, &solve, remeshed, crossings, measured.stretch, seconds,
         );
+        if let Some(restraint) = &mut report.restraint {
+            restraint.energy_j = measured.energy;
+        }
         report.yielded = yielded;
         report.warnings = std::mem::take(&mut self.tangled.warnings);
         Ok(report)
@@ -390,6 +403,18 @@ impl World {
             }
         }
         Ok(())
+    }
+
+    /// Measures the cloth as it is at a time (s).
+    fn measure(&mut self, time: f64) -> Measured {
+        let stretch = StretchRange::of(&self.cloth);
+        let mut energy = 0.0;
+        if let (Some(restraints), Some(prepared)) = (&self.restraints, &mut self.prepared) {
+            let policy = restraints.policy(&self.cloth, &self.garments);
+            energy = rest::kinetic_energy(&policy, &self.cloth, time);
+            energy += prepared.system.energy_at_rest(&self.cloth.x);
+        }
+        Measured { stretch, energy }
     }
 
     /// Kinetic energy (J), the restrained one where anything may rest, and then who does.

@@ -51,16 +51,16 @@ impl Restrained<'_> {
 }
 
 /// Share of the tolerance to which a convex problem is solved.
-const INNER: f64 = 0.2;
+const INNER: f64 = 0.5;
 /// Share of the error of an iteration to which it is solved, if that is more: the next iteration has
 /// other forces.
-const REDUCTION: f64 = 0.1;
+const REDUCTION: f64 = 0.3;
 /// Share of the greatest speed by which momenta over mass may be off at rest and in transition, as long
 /// as that is less than a share of what may rest.
-const COARSE: [f64; 2] = [0.02, 0.1];
-const ROUGH: f64 = 0.3;
+const COARSE: [f64; 2] = [0.1, 0.3];
+const ROUGH: f64 = 0.5;
 /// The most linear systems for one direction; what is left then is for the next.
-const MAX_ROUNDS: usize = 8;
+const MAX_ROUNDS: usize = 3;
 /// With a greater share of movers, those that rest keep rows of the identity, and the matrix its
 /// pattern.
 const MOST: f64 = 0.7;

@@ -38,15 +38,17 @@ const REACH: usize = 2;
 const WHOLE: f64 = 0.6;
 /// The part is made smaller when less than this share of it is wanted.
 const SHRINK: f64 = 0.5;
-/// Error of a momentum that is restrained, as a share of that up to which its vertex rests. What is left
-/// of forces in equilibrium must be less than what bleeds away in the stage, of which it is a share too,
-/// or it would never rest.
-const FINE: f64 = 0.05;
+/// Error of a momentum that is restrained, as a share of that up to which its vertex rests.
+const FINE: f64 = 1e-4;
+/// The same where momentum bleeds, as a share of what does in the stage: were it more, forces left over
+/// in equilibrium would keep vertices from rest.
 const FINE_BLED: f64 = 0.3;
+const ROUGH: f64 = 0.05;
 /// By what momentum bleeds faster at rest: so that what is slow does not creep on for ever.
 const STATIC: f64 = 2.0;
-/// Effective speed, as a share of that up to which a vertex rests, below which bleeding puts it to rest.
-const STICK: f64 = 0.02;
+/// Effective speed, as a share of that up to which a vertex rests, below which bleeding puts it to rest
+/// if it gets slower still.
+const STICK: f64 = 0.2;
 /// Change of a contact force on a sleeper that is rounding (1).
 const SAME: f64 = 1e-9;
 
@@ -179,8 +181,6 @@ impl Resting {
             let (r, p_r) = (p.norm(), held[i].p_r());
             if r <= p_r {
                 p * (1.0 - STATIC * bled).max(0.0)
-            } else if held[i].dphi(r) < STICK * p_r {
-                p * ((1.0 - STATIC * bled).max(0.0) * p_r / r)
             } else {
                 p - (p - held[i].s(&p)) * bled
             }
@@ -191,7 +191,7 @@ impl Resting {
         let woken = self.woken(&held, &p, start, &from, &fixed, &mut rest);
         self.grow(woken, false);
         let mut contact_s = 0.0;
-        let fine = f64::min(FINE, FINE_BLED * self.policy.bleeding.map_or(f64::INFINITY, |tau| h / tau));
+        let fine = self.policy.bleeding.map_or(FINE, |tau| (FINE_BLED * h / tau).clamp(FINE, ROUGH));
         let whole = WholeStage { cloth, start, held: &held, p: &p, fixed: &fixed, from: &from, fine };
         let is_still = |c: &Box<dyn Contact>| c.is_still([time_t0, time]);
         if self.n_active == 0 && system.contact.as_ref().is_none_or(is_still) {
@@ -416,21 +416,31 @@ impl Resting {
                 *v = d / h;
                 if !whole.fixed[i] && !held.is_free() {
                     let conjugate = held.conjugate().expect("it was convex before the stage");
-                    *v = conjugate.momentum(v) / whole.cloth.m[i];
+                    let p = conjugate.momentum(v);
+                    *v = self.stuck(held, &whole.p[i], p) / whole.cloth.m[i];
                 }
                 continue;
             }
             let gradient = gradient.map_or_else(World3::zeros, |gradient| gradient[i]);
             let mut p = whole.p[i] - gradient * h;
             let (norm, most) = (p.norm(), whole.held[i].p_r());
-            if norm > most {
-                // Left over by the solver: it would be energy from nowhere.
-                report.cut += usize::from(norm > (1.0 + 2.0 * whole.fine) * most);
+            let is_off = norm > (1.0 + 2.0 * whole.fine) * most;
+            if is_off || (norm > most && self.policy.bleeding.is_some()) {
+                // Left over by a stage that did not converge, it would be energy from nowhere; where
+                // momentum bleeds, less does too.
+                report.cut += usize::from(is_off);
                 p *= most / norm;
             }
             *v = p / whole.cloth.m[i];
         }
         v
+    }
+
+    /// A momentum at the end of a stage, put to rest if it bleeds, is slow, and gets slower.
+    fn stuck(&self, held: &Held, before: &World3, p: World3) -> World3 {
+        let (r, p_r) = (p.norm(), held.p_r());
+        let is_slow = || held.dphi(r) < STICK * p_r && r <= before.norm();
+        if self.policy.bleeding.is_some() && is_slow() { p * (p_r / r) } else { p }
     }
 
     /// Lets vertices sleep that are far from all that moved, if that makes the part much smaller.

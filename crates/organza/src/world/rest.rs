@@ -56,6 +56,15 @@ impl Restraint for ByGarment {
     }
 }
 
+/// Restrained kinetic energy (J).
+pub(super) fn kinetic_energy(policy: &RestingPolicy, cloth: &ClothState, time: f64) -> f64 {
+    let each = cloth.m.iter().zip(&cloth.x).enumerate().map(|(index, (&mass, &x))| {
+        let held = policy.restraint.at(&Particle { index, mass, x, time });
+        held.kinetic_energy(&(cloth.v[index] * mass))
+    });
+    each.sum()
+}
+
 /// What every vertex does, and what is told of it: restrained kinetic energy (J) and a summary.
 pub(super) fn summary(
     policy: &RestingPolicy,
@@ -64,13 +73,10 @@ pub(super) fn summary(
     time: f64,
     rest: &RestReport,
 ) -> (f64, RestraintSummary) {
-    let mut energy = 0.0;
     let mut motions = Vec::with_capacity(cloth.m.len());
     for (index, (&mass, &x)) in cloth.m.iter().zip(&cloth.x).enumerate() {
         let held = policy.restraint.at(&Particle { index, mass, x, time });
-        let p = cloth.v[index] * mass;
-        energy += held.kinetic_energy(&p);
-        motions.push(held.motion(&p));
+        motions.push(held.motion(&(cloth.v[index] * mass)));
     }
     let count = |motion| motions.iter().filter(|m| **m == motion).count();
     let summary = RestraintSummary {
@@ -85,10 +91,11 @@ pub(super) fn summary(
         woken: rest.woken,
         parts_built: rest.parts,
         stages_redone: rest.redone,
+        energy_j: 0.0,
         momenta_cut: rest.cut,
         states: states(&motions, cloth, garments),
     };
-    (energy, summary)
+    (kinetic_energy(policy, cloth, time), summary)
 }
 
 /// Letters of the vertices of every garment in their order, each after how often it follows itself.
