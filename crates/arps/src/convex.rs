@@ -168,11 +168,7 @@ impl ConvexSolver {
     /// Lists the particles that move with their effective masses, sets the change of those that rest,
     /// which is to go back to where they were, and the right-hand side. True if none is restrained
     /// that could move.
-    fn find_movers<B: Stiffness>(
-        &mut self,
-        problem: &ConvexProblem<'_, B>,
-        d: &[Vector3],
-    ) -> bool {
+    fn find_movers<B: Stiffness>(&mut self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) -> bool {
         let (mut is_full, mut is_back) = (true, false);
         self.movers.clear();
         self.inertia.clear();

@@ -17,8 +17,8 @@
 use crate::dihedral;
 use crate::element::{ElementModel, ElementSystem, Stiffness, batch, chosen};
 use crate::force::{Force, Stage};
-use crate::part::Part;
 use crate::law::Law;
+use crate::part::Part;
 use crate::shape_operator::{ShapeOperatorModel, hinge};
 use crate::solver::{
     ABSENT, BlockMatrix, BlockPattern, PatternBuilder, PatternError, StencilSlots,

@@ -172,7 +172,9 @@ impl<M: ElementModel<N> + 'static, const N: usize> Force for Elements<M, N> {
     fn part(&self, part: &Part) -> Option<Box<dyn Force>> {
         let (elements, stencils) = part.elements(self.model.stencils());
         let some = !elements.is_empty();
-        some.then(|| Box::new(Elements::new(self.model.part(&elements, stencils))) as Box<dyn Force>)
+        some.then(|| {
+            Box::new(Elements::new(self.model.part(&elements, stencils))) as Box<dyn Force>
+        })
     }
 }
 

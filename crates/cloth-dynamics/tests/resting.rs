@@ -124,7 +124,7 @@ fn what_is_fast_moves_as_without_restraint() {
         for _ in 0..10 {
             plain.step(integrator.as_mut(), 0.01);
             let report = run.step(integrator.as_mut(), 0.01);
-            assert!(report.rest.solves <= report.iterations && report.rest.solves > 0);
+            assert!(report.rest.solves <= report.iterations, "{report:?}");
         }
         for (a, b) in run.cloth.x.iter().zip(&plain.cloth.x) {
             assert!((a - b).norm() < 1e-9, "{a} {b}");
@@ -165,13 +165,7 @@ fn parts_have_the_forces_of_the_whole_to_the_bit() {
     }
 }
 
-fn check_part(
-    whole: &System,
-    part: &Part,
-    cloth: &ClothState,
-    before: &[World3],
-    all: &[World3],
-) {
+fn check_part(whole: &System, part: &Part, cloth: &ClothState, before: &[World3], all: &[World3]) {
     let mut own = whole.part(part).unwrap();
     let before = part.gather(before);
     own.begin(Stage { x_t0: &before, base: &before, h: 0.01 });

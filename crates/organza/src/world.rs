@@ -321,7 +321,14 @@ impl World {
         let (substeps, remeshed) = (self.substeps, remeshed.as_ref());
         let crossings = self.contact.map(|_| crossings.map_or(0, |crossings| crossings.n));
         let mut report = FrameReport::new(
-            self, substeps, retries, &solve, remeshed, crossings, measured.stretch, seconds,
+            self,
+            substeps,
+            retries,
+            &solve,
+            remeshed,
+            crossings,
+            measured.stretch,
+            seconds,
         );
         if let Some(restraint) = &mut report.restraint {
             restraint.energy_j = measured.energy;

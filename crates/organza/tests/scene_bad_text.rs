@@ -229,10 +229,8 @@ fn complaints_about_set_values_name_the_argument() {
 
 #[test]
 fn what_is_not_supported_is_an_error_or_a_warning() {
-    let text = with(
-        "cameras: [{}], morphs: true, fluid: null, fluids: false,",
-        "plasticity: {yield: 1}",
-    );
+    let text =
+        with("cameras: [{}], morphs: true, fluid: null, fluids: false,", "plasticity: {yield: 1}");
     let errors = errors_of(text.as_bytes(), &[]);
     assert_eq!(
         errors.to_string(),

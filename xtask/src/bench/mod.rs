@@ -5,6 +5,7 @@
 //! [`Report`].
 
 mod arcsim;
+mod arps;
 mod contact;
 mod cpu_time;
 mod fixed_or_adaptive;
@@ -42,7 +43,7 @@ struct Benchmark {
 }
 
 /// All benchmarks, in the order in which they run.
-const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK, contact::BENCHMARK];
+const BENCHMARKS: &[Benchmark] = &[flag::BENCHMARK, contact::BENCHMARK, arps::BENCHMARK];
 
 /// What a benchmark works with.
 struct Context {

@@ -52,8 +52,7 @@ impl TimeIntegrator for Sdirk2 {
             solve_stage(cloth, system, solver, settings, &start)?;
 
         let moved = cloth.x.iter().zip(&x_1);
-        let base: Vec<World3> =
-            moved.map(|(x, x_1)| x + (x_1 - x) / h_stage * h_rest).collect();
+        let base: Vec<World3> = moved.map(|(x, x_1)| x + (x_1 - x) / h_stage * h_rest).collect();
         let free: Vec<World3> = cloth
             .v
             .iter()

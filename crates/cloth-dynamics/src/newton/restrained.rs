@@ -114,8 +114,9 @@ impl Newton<'_> {
         let zero = World3::zeros();
         let from: Vec<World3> =
             (0..n).map(|i| if moves(i) { self.x[i] - restrained.base[i] } else { zero }).collect();
-        let drive: Vec<World3> =
-            (0..n).map(|i| if moves(i) { restrained.p[i] - gradient[i] * h } else { zero }).collect();
+        let drive: Vec<World3> = (0..n)
+            .map(|i| if moves(i) { restrained.p[i] - gradient[i] * h } else { zero })
+            .collect();
         let fastest = from.iter().map(|d| d.norm_squared()).fold(0.0, f64::max).sqrt() / h;
         // How far momenta are off, in units of what they may be.
         let tolerance = |i: usize| {
@@ -130,8 +131,10 @@ impl Newton<'_> {
             most.min(share.clamp(restrained.fine, ROUGH) * held.p_r())
         };
         let mut tolerance: Vec<f64> = (0..n).map(tolerance).collect();
-        let error = |i: usize| restrained.conjugates[i].error(&drive[i], &from[i], h) / tolerance[i];
-        let is_slow = |i: usize| mass[i] * from[i].norm() < h * restrained.conjugates[i].held().p_f();
+        let error =
+            |i: usize| restrained.conjugates[i].error(&drive[i], &from[i], h) / tolerance[i];
+        let is_slow =
+            |i: usize| mass[i] * from[i].norm() < h * restrained.conjugates[i].held().p_f();
         let slow = (0..n).filter(|&i| is_slow(i)).map(error).fold(0.0, f64::max);
         if self.is_near && slow <= 1.0 {
             return Ok(Found::Minimum);

@@ -142,7 +142,8 @@ impl Resting {
         if !all || self.queue.next_time() <= time + h {
             return false;
         }
-        stages.iter().all(|end| constraints(*end) == self.last) && contact.is_none_or(|contact| contact.is_still([time, time + h]))
+        stages.iter().all(|end| constraints(*end) == self.last)
+            && contact.is_none_or(|contact| contact.is_still([time, time + h]))
     }
 
     /// Solves one stage.
@@ -191,8 +192,10 @@ impl Resting {
         let woken = self.woken(&held, &p, start, &from, &fixed, &mut rest);
         self.grow(woken, false);
         let mut contact_s = 0.0;
-        let fine = self.policy.bleeding.map_or(FINE, |tau| (FINE_BLED * h / tau).clamp(FINE, ROUGH));
-        let whole = WholeStage { cloth, start, held: &held, p: &p, fixed: &fixed, from: &from, fine };
+        let fine =
+            self.policy.bleeding.map_or(FINE, |tau| (FINE_BLED * h / tau).clamp(FINE, ROUGH));
+        let whole =
+            WholeStage { cloth, start, held: &held, p: &p, fixed: &fixed, from: &from, fine };
         let is_still = |c: &Box<dyn Contact>| c.is_still([time_t0, time]);
         if self.n_active == 0 && system.contact.as_ref().is_none_or(is_still) {
             rest.slept = 1;
@@ -386,9 +389,15 @@ impl Resting {
         own.springs = Springs::of(part, &whole.start.constraints.springs);
         own.begin(local.stage(whole.start.h));
         let Some(contact) = system.contact.take() else {
-            return Ok(scattered(part, whole, local.solve(own, solver, settings, whole)?, Vec::new()));
+            return Ok(scattered(
+                part,
+                whole,
+                local.solve(own, solver, settings, whole)?,
+                Vec::new(),
+            ));
         };
-        let lent = PartContact::new(contact, part.clone(), whole.from.to_vec(), whole.fixed.to_vec());
+        let lent =
+            PartContact::new(contact, part.clone(), whole.from.to_vec(), whole.fixed.to_vec());
         own.contact = Some(Box::new(lent.clone()));
         let room = own.make_room_for_contact().map_err(SolveError::from);
         let solved = room.and_then(|()| local.solve(own, solver, settings, whole));

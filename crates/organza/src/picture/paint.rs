@@ -128,6 +128,9 @@ mod tests {
         );
         garment.material[0][2] = [2.0, 0.0];
         assert!(stretches(&garment).all(f64::is_nan));
-        assert_eq!(Colouring::Stretch.of(&garment, None), OwnedPaint::Triangles(vec![VIRIDIS.undefined]));
+        assert_eq!(
+            Colouring::Stretch.of(&garment, None),
+            OwnedPaint::Triangles(vec![VIRIDIS.undefined])
+        );
     }
 }
