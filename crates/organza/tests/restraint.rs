@@ -166,9 +166,9 @@ fn hanging_cloth_is_pushed_once() {
 fn poke_wakes_cloth_that_sleeps() {
     let loaded = own("poke.json5", &["cloths[0].mesh.grid.cells=[6, 6]"]);
     let mut world = World::new(&loaded).unwrap();
-    let before = run(&mut world, 49);
+    let before = run(&mut world, 50);
     let state = |report: &FrameReport| report.restraint.clone().unwrap();
-    assert_eq!(state(&before[48]).stages_slept, 1);
+    assert_eq!(state(&before[49]).stages_slept, 1);
     let poked = run(&mut world, 6);
     assert!(poked.iter().all(|report| state(report).stages_slept == 0));
     assert!(poked.iter().any(|report| state(report).active > 20), "{:?}", poked.last());
