@@ -116,6 +116,8 @@ fn what_is_fast_moves_as_without_restraint() {
         run.held = Constraints::default();
         run.cloth.v.fill(World3::new(0.3, 0.2, -1.0));
         run.settings = NewtonSettings { max_iterations: 50, tolerance: 1e-7 };
+        let exact = LinearSettings { tolerance: 1e-12, ..LinearSettings::default() };
+        run.solver = SolverKind::SparseCholesky.build(exact);
         run
     };
     for mut integrator in integrators() {

@@ -11,7 +11,7 @@ use crate::contact::{ContactSettings, Crossings, SurfaceContact};
 use crate::handles::{Handles, by_name};
 use crate::obstacle::Obstacle;
 use crate::remeshing::Remeshing;
-use crate::report::{FrameReport, RestraintSummary, Seconds, StretchRange};
+use crate::report::{FrameReport, Seconds};
 use crate::scene::format::{Integrator, LinearSolver as Method};
 use crate::scene::{Dialect, Loaded};
 use bodies::{Bodies, appearing_in_cloth};
@@ -23,7 +23,7 @@ use cloth_dynamics::{
 use collision::SurfaceError;
 use mesh_core::{ClothState, World3};
 use remesh::SizingField;
-use rest::Restraints;
+use rest::{Measured, Restraints};
 use std::sync::Arc;
 use std::time::Instant;
 use tangled::Tangled;
@@ -114,14 +114,6 @@ impl std::fmt::Debug for World {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("World").field("frame", &self.frame).finish_non_exhaustive()
     }
-}
-
-/// What is measured at the end of the steps of a frame.
-#[derive(Clone, Copy)]
-struct Measured {
-    stretch: StretchRange,
-    /// Restrained energy (J), if anything may rest.
-    energy: f64,
 }
 
 /// The scene has grown beyond what matrices or collision trees can hold.
@@ -410,30 +402,6 @@ impl World {
             }
         }
         Ok(())
-    }
-
-    /// Measures the cloth as it is at a time (s).
-    fn measure(&mut self, time: f64) -> Measured {
-        let stretch = StretchRange::of(&self.cloth);
-        let mut energy = 0.0;
-        if let (Some(restraints), Some(prepared)) = (&self.restraints, &mut self.prepared) {
-            let policy = restraints.policy(&self.cloth, &self.garments);
-            energy = rest::kinetic_energy(&policy, &self.cloth, time);
-            energy += prepared.system.energy_at_rest(&self.cloth.x);
-        }
-        Measured { stretch, energy }
-    }
-
-    /// Kinetic energy (J), the restrained one where anything may rest, and then who does.
-    pub(crate) fn kinetic_energy(
-        &self,
-        rest: &cloth_dynamics::RestReport,
-    ) -> (f64, Option<RestraintSummary>) {
-        let Some(restraints) = &self.restraints else { return (self.cloth.kinetic_energy(), None) };
-        let policy = restraints.policy(&self.cloth, &self.garments);
-        let (energy, summary) =
-            rest::summary(&policy, &self.cloth, &self.garments, self.time(), rest);
-        (energy, Some(summary))
     }
 
     /// What passes through what at the end of a frame; `None` if nothing does, or contact is off.

@@ -1,7 +1,8 @@
 //! Who rests in a world: thresholds by cloth, the policy on a mesh, and what is told of it.
 
+use super::World;
 use crate::build::Garment;
-use crate::report::RestraintSummary;
+use crate::report::{RestraintSummary, StretchRange};
 use crate::scene::{Scene, Thresholds};
 use arps::{Held, Motion, Particle, Restraint};
 use cloth_dynamics::{RestReport, RestingPolicy};
@@ -32,6 +33,36 @@ impl Restraints {
         }
         let restraint = Arc::new(ByGarment { of_vertex, by_garment: self.by_garment.clone() });
         RestingPolicy { restraint, bleeding: self.bleeding }
+    }
+}
+
+/// What is measured at the end of the steps of a frame.
+#[derive(Clone, Copy)]
+pub(super) struct Measured {
+    pub(super) stretch: StretchRange,
+    /// Restrained energy (J), if anything may rest.
+    pub(super) energy: f64,
+}
+
+impl World {
+    /// Measures the cloth as it is at a time (s).
+    pub(super) fn measure(&mut self, time: f64) -> Measured {
+        let stretch = StretchRange::of(&self.cloth);
+        let mut energy = 0.0;
+        if let (Some(restraints), Some(prepared)) = (&self.restraints, &mut self.prepared) {
+            let policy = restraints.policy(&self.cloth, &self.garments);
+            energy = kinetic_energy(&policy, &self.cloth, time);
+            energy += prepared.system.energy_at_rest(&self.cloth.x);
+        }
+        Measured { stretch, energy }
+    }
+
+    /// Kinetic energy (J), the restrained one where anything may rest, and then who does.
+    pub(crate) fn kinetic_energy(&self, rest: &RestReport) -> (f64, Option<RestraintSummary>) {
+        let Some(restraints) = &self.restraints else { return (self.cloth.kinetic_energy(), None) };
+        let policy = restraints.policy(&self.cloth, &self.garments);
+        let (energy, summary) = summary(&policy, &self.cloth, &self.garments, self.time(), rest);
+        (energy, Some(summary))
     }
 }
 
