@@ -96,11 +96,15 @@ fn policies_that_restrain_nothing_are_no_policy_to_the_bit() {
     ];
     for mut integrator in integrators() {
         let mut plain = Run::new(5, None, SOME);
-        (0..8).for_each(|_| drop(plain.step(integrator.as_mut(), 0.02)));
+        (0..8).for_each(|_| {
+            plain.step(integrator.as_mut(), 0.02);
+        });
         for restraint in &nothing {
             let policy = RestingPolicy { restraint: restraint.clone(), bleeding: Some(0.5) };
             let mut run = Run::new(5, Some(policy), SOME);
-            (0..8).for_each(|_| drop(run.step(integrator.as_mut(), 0.02)));
+            (0..8).for_each(|_| {
+                run.step(integrator.as_mut(), 0.02);
+            });
             assert_eq!((&run.cloth.x, &run.cloth.v), (&plain.cloth.x, &plain.cloth.v));
             assert_eq!(run.total.rest, RestReport::default());
         }
@@ -252,7 +256,9 @@ fn what_rests_costs_nothing_until_it_is_pulled() {
     run.held.springs = vec![(lowest as u32, pull, 5.0)];
     let report = run.step(&mut ImplicitEuler, 0.02);
     assert_eq!(report.rest.slept, 0);
-    (0..5).for_each(|_| drop(run.step(&mut ImplicitEuler, 0.02)));
+    (0..5).for_each(|_| {
+        run.step(&mut ImplicitEuler, 0.02);
+    });
     assert!(run.cloth.x[lowest].z > rest[lowest].z + 0.01);
 }
 
@@ -284,7 +290,9 @@ fn any_number_of_threads_gives_the_same_bits() {
     let run = |threads| {
         par::with_threads(threads, || {
             let mut run = Run::new(10, Some(speed(0.1, Some(0.5))), SOME);
-            (0..40).for_each(|_| drop(run.step(&mut Sdirk2, 0.02)));
+            (0..40).for_each(|_| {
+                run.step(&mut Sdirk2, 0.02);
+            });
             run.system.settle(&mut run.cloth, run.time);
             (run.cloth.x, run.cloth.v)
         })
@@ -299,7 +307,9 @@ fn thresholds_at_their_extremes() {
     let for_ever: Arc<dyn Restraint> = Arc::new(Speed::new(f64::INFINITY, f64::INFINITY).unwrap());
     let mut run = Run::new(4, Some(RestingPolicy { restraint: for_ever, bleeding: None }), NONE);
     let start = run.cloth.x.clone();
-    (0..20).for_each(|_| drop(run.step(&mut ImplicitEuler, 0.02)));
+    (0..20).for_each(|_| {
+        run.step(&mut ImplicitEuler, 0.02);
+    });
     assert_eq!(run.cloth.x, start);
     assert!(run.total.rest.slept >= 18, "{:?}", run.total.rest);
 

@@ -38,6 +38,7 @@ fn ball(
     friction: f64,
     way: impl Fn(f64) -> World3 + Send + Sync + 'static,
 ) -> Obstacles {
+    moves: true,
     let (rings, sectors) = (16, 24);
     let mut x = vec![World3::new(0.0, 0.0, radius), World3::new(0.0, 0.0, -radius)];
     for i in 1..rings {
@@ -62,6 +63,7 @@ fn ball(
     }
     let surface = Surface::new(x.len(), &triangles).unwrap();
     Obstacles {
+        moves: true,
         surface,
         friction: vec![friction; x.len()],
         thickness: vec![None; x.len()],
@@ -195,6 +197,7 @@ fn cloth_slips_on_an_incline_where_the_angle_of_friction_is_passed() {
             let plane: Vec<World3> =
                 corners.iter().map(|[x, y]| turn * World3::new(*x, *y, 0.0)).collect();
             let obstacles = Obstacles {
+                moves: true,
                 surface: Surface::new(4, &[[0, 1, 2], [0, 2, 3]]).unwrap(),
                 friction: vec![mu; 4],
                 thickness: vec![None; 4],
@@ -220,6 +223,7 @@ fn cloth_slips_on_an_incline_where_the_angle_of_friction_is_passed() {
 
 /// A cylinder of radius `r` about the y axis, without its ends.
 fn cylinder(r: f64, friction: f64) -> Obstacles {
+    moves: true,
     let n = 96u32;
     let x: Vec<World3> = (0..n)
         .flat_map(|i| {
@@ -234,6 +238,7 @@ fn cylinder(r: f64, friction: f64) -> Obstacles {
         })
         .collect();
     Obstacles {
+        moves: true,
         surface: Surface::new(x.len(), &triangles).unwrap(),
         friction: vec![friction; x.len()],
         thickness: vec![None; x.len()],

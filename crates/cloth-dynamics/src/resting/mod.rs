@@ -187,8 +187,8 @@ impl Resting {
             self.policy.bleeding.map_or(FINE, |tau| (FINE_BLED * h / tau).clamp(FINE, ROUGH));
         let whole =
             WholeStage { cloth, start, held: &held, p: &p, fixed: &fixed, from: &from, fine };
-        let is_still = |c: &Box<dyn Contact>| c.is_still([time_t0, time]);
-        if self.n_active == 0 && system.contact.as_ref().is_none_or(is_still) {
+        let is_still = |c: &dyn Contact| c.is_still([time_t0, time]);
+        if self.n_active == 0 && system.contact.as_deref().is_none_or(is_still) {
             rest.slept = 1;
             rest.untouched = n;
             let mut v = velocity.to_vec();
