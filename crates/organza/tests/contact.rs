@@ -38,7 +38,6 @@ fn ball(
     friction: f64,
     way: impl Fn(f64) -> World3 + Send + Sync + 'static,
 ) -> Obstacles {
-    moves: true,
     let (rings, sectors) = (16, 24);
     let mut x = vec![World3::new(0.0, 0.0, radius), World3::new(0.0, 0.0, -radius)];
     for i in 1..rings {
@@ -223,7 +222,6 @@ fn cloth_slips_on_an_incline_where_the_angle_of_friction_is_passed() {
 
 /// A cylinder of radius `r` about the y axis, without its ends.
 fn cylinder(r: f64, friction: f64) -> Obstacles {
-    moves: true,
     let n = 96u32;
     let x: Vec<World3> = (0..n)
         .flat_map(|i| {
