@@ -23,6 +23,32 @@ pub trait Blocks {
     }
 }
 
+/// A symmetric positive semidefinite map from displacements (m) to forces (N), as the convex step
+/// looks at it.
+pub trait Stiffness {
+    /// Sets `out` to the matrix times `d`.
+    fn multiply(&self, d: &[Vector3], out: &mut [Vector3]);
+    /// Sets `out` to the sum of the absolute values of all that a particle's row of the product is
+    /// summed from: the measure of its rounding.
+    fn multiply_abs(&self, d: &[Vector3], out: &mut [f64]);
+}
+
+impl<B: Blocks> Stiffness for B {
+    fn multiply(&self, d: &[Vector3], out: &mut [Vector3]) {
+        for (i, out) in out.iter_mut().enumerate() {
+            *out = self.row_times(i, d);
+        }
+    }
+
+    fn multiply_abs(&self, d: &[Vector3], out: &mut [f64]) {
+        for (i, out) in out.iter_mut().enumerate() {
+            let mut sum = (self.diagonal(i) * d[i]).abs().sum();
+            self.visit_row(i, |j, block| sum += (block * d[j]).abs().sum());
+            *out = sum;
+        }
+    }
+}
+
 /// A matrix of which only the blocks of interacting particles are kept, both halves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SparseBlocks {

@@ -100,6 +100,16 @@ impl Conjugate {
         radial_and_across(&(v / speed), self.ddpsi(speed), self.dpsi(speed) / speed)
     }
 
+    /// How far a momentum p (kg m/s) at the end of a step of h (s) is from one that goes with the
+    /// displacement d (m).
+    pub fn error(&self, p: &Vector3, d: &Vector3, h: f64) -> f64 {
+        if *d == Vector3::zeros() {
+            (p.norm() - self.held.p_r()).max(0.0)
+        } else {
+            (self.momentum(&(d / h)) - p).norm()
+        }
+    }
+
     /// True if a particle with this momentum at the end of the step stays where it is: the kink.
     #[inline]
     pub fn stays(&self, p: &Vector3) -> bool {

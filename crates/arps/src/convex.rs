@@ -11,7 +11,7 @@
 //! displacement. A particle stays exactly where it is while ‖p_next‖ ≤ p_r, the kink of ψ at zero, so
 //! who moves is decided at the end of the step and not at its beginning.
 
-use crate::blocks::Blocks;
+use crate::blocks::Stiffness;
 use crate::error::StepError;
 use crate::held::{Held, Motion, radial_and_across};
 use crate::linear::MoverSystem;
@@ -24,12 +24,16 @@ pub struct ConvexProblem<'a, B> {
     pub h: f64,
     /// Conjugate kinetic energy of each particle.
     pub conjugates: &'a [Conjugate],
-    /// Drive b = p + h f of each particle (kg m/s).
+    /// Displacements at which the forces are known (m).
+    pub origin: &'a [Vector3],
+    /// Momenta p + h f with the forces there (kg m/s): b = drive + C origin.
     pub drive: &'a [Vector3],
     /// Stiffness L, positive semidefinite (N/m).
     pub stiffness: &'a B,
-    /// Residual of momentum at which to stop, at least the rounding of C d (kg m/s).
-    pub tolerance: f64,
+    /// Error of each momentum at which to stop, at least the rounding of C d (kg m/s).
+    pub tolerance: &'a [f64],
+    /// The most rounds of Newton's method.
+    pub max_rounds: usize,
 }
 
 /// How a convex problem was solved.
@@ -45,6 +49,8 @@ pub struct ConvexReport {
     pub residual: f64,
     /// False if the rounds ran out before the residual came under the tolerance.
     pub converged: bool,
+    /// True if every particle had full dynamics in every linear system.
+    pub is_full: bool,
 }
 
 /// Solves convex problems by a semi-smooth Newton method on the dual, which has no kink:
@@ -70,7 +76,8 @@ pub struct ConvexSolver {
     c_change: Vec<Vector3>,
 }
 
-const MAX_ROUNDS: usize = 60;
+/// Rounds in which momenta are updated by what changed; after that, against rounding, anew.
+const UPDATED_ROUNDS: usize = 3;
 
 impl ConvexSolver {
     /// Minimises from the displacements `d` (m) on, and leaves the solution there. `solve` solves the
@@ -82,21 +89,21 @@ impl ConvexSolver {
     ///
     /// # Panics
     /// If the lists of the problem and `d` have different lengths.
-    pub fn solve<B: Blocks>(
+    pub fn solve<B: Stiffness>(
         &mut self,
         problem: &ConvexProblem<'_, B>,
         d: &mut [Vector3],
         mut solve: impl FnMut(&MoverSystem<'_, B>, &mut [Vector3]) -> Result<(), StepError>,
     ) -> Result<ConvexReport, StepError> {
-        let mut report = ConvexReport::default();
+        let mut report = ConvexReport { is_full: true, ..ConvexReport::default() };
+        self.momenta(problem, d);
         loop {
-            self.momenta(problem, d);
             (report.residual, report.converged) = self.residual(problem, d);
-            if report.converged || report.n_rounds == MAX_ROUNDS {
+            if report.converged || report.n_rounds == problem.max_rounds {
                 return Ok(report);
             }
             report.n_rounds += 1;
-            self.find_movers(problem, d);
+            report.is_full &= self.find_movers(problem, d);
             if !self.movers.is_empty() {
                 let system = MoverSystem {
                     movers: &self.movers,
@@ -114,41 +121,55 @@ impl ConvexSolver {
                     self.change[i] = self.step[a];
                 }
             }
-            self.advance(problem, d);
+            self.advance(problem, d, report.n_rounds <= UPDATED_ROUNDS);
         }
     }
 
-    /// Momenta at the end of the step for displacements, and the size of what they are summed from.
-    fn momenta<B: Blocks>(&mut self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) {
+    /// Momenta at the end of the step for displacements.
+    fn momenta<B: Stiffness>(&mut self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) {
         self.p.clear();
-        self.size.clear();
-        for i in 0..d.len() {
-            let own = problem.stiffness.diagonal(i) * d[i];
-            let (mut sum, mut size) = (own, own.abs().sum());
-            problem.stiffness.visit_row(i, |j, block| {
-                let part = block * d[j];
-                sum += part;
-                size += part.abs().sum();
-            });
-            self.p.push(problem.drive[i] - problem.h * sum);
-            self.size.push(problem.drive[i].abs().sum() + problem.h * size);
+        self.p.extend_from_slice(problem.drive);
+        self.change.clear();
+        self.change.extend(d.iter().zip(problem.origin).map(|(d, origin)| d - origin));
+        if self.change.iter().all(|change| *change == Vector3::zeros()) {
+            return;
+        }
+        self.c_change.resize(d.len(), Vector3::zeros());
+        problem.stiffness.multiply(&self.change, &mut self.c_change);
+        for (p, c) in self.p.iter_mut().zip(&self.c_change) {
+            *p -= problem.h * c;
         }
     }
 
     /// Greatest error of momentum, and whether each is below the tolerance or rounding.
-    fn residual<B: Blocks>(&self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) -> (f64, bool) {
+    fn residual<B: Stiffness>(
+        &mut self,
+        problem: &ConvexProblem<'_, B>,
+        d: &[Vector3],
+    ) -> (f64, bool) {
         let (mut worst, mut converged) = (0.0f64, true);
+        self.size.clear();
         for i in 0..d.len() {
-            let error = momentum_error(&problem.conjugates[i], &self.p[i], &d[i], problem.h);
+            let error = problem.conjugates[i].error(&self.p[i], &d[i], problem.h);
             worst = worst.max(error);
-            converged &= error <= problem.tolerance + 8.0 * f64::EPSILON * self.size[i];
+            if error <= problem.tolerance[i] {
+                continue;
+            }
+            if self.size.is_empty() {
+                self.size.resize(d.len(), 0.0);
+                problem.stiffness.multiply_abs(d, &mut self.size);
+            }
+            let size = problem.drive[i].abs().sum() + problem.h * self.size[i];
+            converged &= error <= problem.tolerance[i] + 8.0 * f64::EPSILON * size;
         }
         (worst, converged)
     }
 
     /// Lists the particles that move with their effective masses, sets the change of those that rest,
-    /// which is to go back to where they were, and the right-hand side.
-    fn find_movers<B: Blocks>(&mut self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) {
+    /// which is to go back to where they were, and the right-hand side. True if none is restrained
+    /// that could move.
+    fn find_movers<B: Stiffness>(&mut self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) -> bool {
+        let (mut is_full, mut is_back) = (true, false);
         self.movers.clear();
         self.inertia.clear();
         self.rhs.clear();
@@ -156,9 +177,12 @@ impl ConvexSolver {
         self.change.clear();
         for i in 0..d.len() {
             let held = problem.conjugates[i].held();
-            if held.motion(&self.p[i]) == Motion::Rest {
+            let motion = held.motion(&self.p[i]);
+            is_full &= motion == Motion::Full || held.p_r() == f64::INFINITY;
+            if motion == Motion::Rest {
                 self.place.push(usize::MAX);
                 self.change.push(-d[i]);
+                is_back |= d[i] != Vector3::zeros();
             } else {
                 self.place.push(self.movers.len());
                 self.change.push(Vector3::zeros());
@@ -166,27 +190,43 @@ impl ConvexSolver {
                 self.inertia.push(inertia(held, &self.p[i]) / problem.h);
             }
         }
+        self.c_change.clear();
+        self.c_change.resize(d.len(), Vector3::zeros());
+        if is_back {
+            problem.stiffness.multiply(&self.change, &mut self.c_change);
+        }
         for (a, &i) in self.movers.iter().enumerate() {
             let v = problem.conjugates[i].held().velocity(&self.p[i]);
-            let mut back = Vector3::zeros();
-            problem.stiffness.visit_row(i, |j, block| back += block * self.change[j]);
-            self.rhs.push(self.inertia[a] * (problem.h * v - d[i]) - problem.h * back);
+            let back = problem.h * self.c_change[i];
+            self.rhs.push(self.inertia[a] * (problem.h * v - d[i]) - back);
         }
+        is_full
     }
 
     /// Goes along the change as far as the dual falls.
-    fn advance<B: Blocks>(&mut self, problem: &ConvexProblem<'_, B>, d: &mut [Vector3]) {
-        self.c_change.clear();
-        let row = |i: usize| problem.h * problem.stiffness.row_times(i, &self.change);
-        self.c_change.extend((0..d.len()).map(row));
+    fn advance<B: Stiffness>(
+        &mut self,
+        problem: &ConvexProblem<'_, B>,
+        d: &mut [Vector3],
+        update: bool,
+    ) {
+        problem.stiffness.multiply(&self.change, &mut self.c_change);
+        self.c_change.iter_mut().for_each(|c| *c *= problem.h);
         let share = self.line_search(problem, d);
         for (d, change) in d.iter_mut().zip(&self.change) {
             *d += share * change;
         }
+        if update {
+            for (p, c) in self.p.iter_mut().zip(&self.c_change) {
+                *p -= share * c;
+            }
+        } else {
+            self.momenta(problem, d);
+        }
     }
 
     /// Derivative of h D along the change, at a share of it.
-    fn slope<B: Blocks>(&self, problem: &ConvexProblem<'_, B>, d: &[Vector3], share: f64) -> f64 {
+    fn slope<B>(&self, problem: &ConvexProblem<'_, B>, d: &[Vector3], share: f64) -> f64 {
         let along = |i: usize| {
             let p = self.p[i] - share * self.c_change[i];
             let v = problem.conjugates[i].held().velocity(&p);
@@ -198,7 +238,7 @@ impl ConvexSolver {
     /// A share of the change at which the dual is least, nearly: its slope rises along the way and is
     /// negative at the start, so wherever it is not positive the dual has only fallen. Looks at slopes
     /// alone, since differences of the dual drown in rounding.
-    fn line_search<B: Blocks>(&self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) -> f64 {
+    fn line_search<B>(&self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) -> f64 {
         let start = self.slope(problem, d, 0.0);
         let flat = 0.1 * start.abs();
         let (mut low, mut high) = ([0.0, start], [1.0, self.slope(problem, d, 1.0)]);
@@ -233,15 +273,5 @@ fn inertia(held: &Held, p: &Vector3) -> Matrix3 {
             let along = held.mass() / held.ddphi(r);
             radial_and_across(&(p / r), along, held.mass() * r / held.dphi(r))
         }
-    }
-}
-
-/// How far a momentum p (kg m/s) at the end of a step of h (s) is from one that goes with the
-/// displacement d (m).
-pub(crate) fn momentum_error(conjugate: &Conjugate, p: &Vector3, d: &Vector3, h: f64) -> f64 {
-    if *d == Vector3::zeros() {
-        (p.norm() - conjugate.held().p_r()).max(0.0)
-    } else {
-        (conjugate.momentum(&(d / h)) - p).norm()
     }
 }

@@ -1,7 +1,7 @@
 //! Implicit restrained steps: backward Euler of the adaptive equations of motion as a convex problem.
 
 use crate::blocks::{Blocks, SparseBlocks};
-use crate::convex::{ConvexProblem, ConvexSolver, momentum_error};
+use crate::convex::{ConvexProblem, ConvexSolver};
 use crate::error::StepError;
 use crate::explicit::{bleeding_kick, check_time};
 use crate::held::Held;
@@ -27,6 +27,7 @@ pub struct Implicit<R> {
     /// Momenta at the beginning of the step, after bleeding.
     p: Vec<Vector3>,
     drive: Vec<Vector3>,
+    tolerances: Vec<f64>,
 }
 
 /// Displacements, with positions, forces and potential energy there.
@@ -56,6 +57,7 @@ pub struct ImplicitReport {
 }
 
 const MAX_NEWTON: usize = 40;
+const MAX_ROUNDS: usize = 60;
 const MAX_HALVINGS: usize = 30;
 
 impl<R: Restraint> Implicit<R> {
@@ -72,6 +74,7 @@ impl<R: Restraint> Implicit<R> {
             next: Trial::default(),
             p: Vec::new(),
             drive: Vec::new(),
+            tolerances: Vec::new(),
         }
     }
 
@@ -134,23 +137,25 @@ impl<R: Restraint> Implicit<R> {
         let mut objective = self.objective(&self.now, h);
         loop {
             report.n_newton += 1;
-            let drive = |i: usize| {
-                self.p[i] + h * (self.now.f[i] + self.stiffness.row_times(i, &self.now.d))
-            };
+            let drive = |i: usize| self.p[i] + h * self.now.f[i];
             self.drive.clear();
             self.drive.extend((0..n).map(drive));
             if let Some(particle) = self.drive.iter().position(|b| !b.iter().all(|c| c.is_finite()))
             {
                 return Err(StepError::NotFinite { particle });
             }
-            let most = self.now.f.iter().zip(&self.p).map(|(f, p)| (p + h * f).norm());
-            let tolerance = self.tolerance * most.fold(0.0, f64::max);
+            let most = self.drive.iter().map(|b| b.norm()).fold(0.0, f64::max);
+            let tolerance = self.tolerance * most;
+            self.tolerances.clear();
+            self.tolerances.resize(n, 0.1 * tolerance);
             let problem = ConvexProblem {
                 h,
                 conjugates: &self.conjugates,
+                origin: &self.now.d,
                 drive: &self.drive,
                 stiffness: &self.stiffness,
-                tolerance: 0.1 * tolerance,
+                tolerance: &self.tolerances,
+                max_rounds: MAX_ROUNDS,
             };
             if report.n_newton == 1 {
                 // Go on as before, to begin with.
@@ -275,7 +280,7 @@ impl<R: Restraint> Implicit<R> {
         let (mut worst, mut converged) = (0.0f64, true);
         for i in 0..self.p.len() {
             let p = self.p[i] + h * self.now.f[i];
-            let error = momentum_error(&self.conjugates[i], &p, &self.now.d[i], h);
+            let error = self.conjugates[i].error(&p, &self.now.d[i], h);
             // Forces inherit the rounding of positions, times the stiffness.
             let mut stiff = self.stiffness.diagonal(i).norm() * self.now.x[i].norm();
             self.stiffness.visit_row(i, |j, block| stiff += block.norm() * self.now.x[j].norm());

@@ -62,7 +62,7 @@
 //! - **Explicit steps.** [`Explicit`] is symplectic; the longest stable step is a little shorter than
 //!   without restraint.
 //! - **Implicit steps.** [`Implicit`] is stable at any stiffness and step. The problem behind it,
-//!   [`ConvexProblem`], can be solved apart from it for matrices ([`Blocks`]) and linear solvers of
+//!   [`ConvexProblem`], can be solved apart from it for matrices ([`Stiffness`]) and linear solvers of
 //!   one's own. It needs a convex [`Law`]; [`paper`] has the scheme of the paper, to compare.
 //! - **Waking.** [`WakeQueue`] knows when a resting particle under a constant force will wake, so that
 //!   it costs nothing until then.
@@ -89,7 +89,7 @@ mod restraint;
 mod wake;
 
 pub use automatic::Automatic;
-pub use blocks::{Blocks, SparseBlocks};
+pub use blocks::{Blocks, SparseBlocks, Stiffness};
 pub use conjugate::Conjugate;
 pub use convex::{ConvexProblem, ConvexReport, ConvexSolver};
 pub use error::{NotConvex, StateError, StepError, ThresholdError};

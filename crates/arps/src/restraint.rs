@@ -31,6 +31,12 @@ pub struct Particle {
 pub trait Restraint: Send + Sync {
     /// The restrained kinetic energy of one particle.
     fn at(&self, particle: &Particle) -> Held;
+
+    /// True if the answer depends on nothing but the mass: then whoever rests need not be asked about
+    /// again.
+    fn is_steady(&self) -> bool {
+        false
+    }
 }
 
 /// No restraint.
@@ -39,6 +45,10 @@ impl Restraint for () {
     fn at(&self, particle: &Particle) -> Held {
         Held::free(particle.mass)
     }
+
+    fn is_steady(&self) -> bool {
+        true
+    }
 }
 
 impl<R: Restraint + ?Sized> Restraint for &R {
@@ -46,12 +56,20 @@ impl<R: Restraint + ?Sized> Restraint for &R {
     fn at(&self, particle: &Particle) -> Held {
         (**self).at(particle)
     }
+
+    fn is_steady(&self) -> bool {
+        (**self).is_steady()
+    }
 }
 
 impl<R: Restraint + ?Sized> Restraint for Box<R> {
     #[inline]
     fn at(&self, particle: &Particle) -> Held {
         (**self).at(particle)
+    }
+
+    fn is_steady(&self) -> bool {
+        (**self).is_steady()
     }
 }
 
@@ -103,6 +121,10 @@ impl Restraint for Speed {
         let mass = particle.mass;
         Held::checked(self.law, mass, mass * self.v_r, mass * self.v_f)
     }
+
+    fn is_steady(&self) -> bool {
+        true
+    }
 }
 
 /// Thresholds of kinetic energy, as in Manteaux2013 Eq. (3): p_r = √(2 m ε_r).
@@ -145,5 +167,9 @@ impl Restraint for Kinetic {
     fn at(&self, particle: &Particle) -> Held {
         let root = particle.mass.sqrt();
         Held::checked(self.law, particle.mass, root * self.root_r, root * self.root_f)
+    }
+
+    fn is_steady(&self) -> bool {
+        true
     }
 }

@@ -126,8 +126,10 @@ proptest! {
         let conjugates: Vec<_> = held.iter().map(|held| held.conjugate().unwrap()).collect();
         let mut stiffness = springs.pattern();
         springs.evaluate(&start.x, &mut vec![Vector3::zeros(); n], &mut stiffness);
+        let (origin, tolerance) = (vec![Vector3::zeros(); n], vec![1e-13; n]);
         let problem = ConvexProblem {
-            h, conjugates: &conjugates, drive: &start.p, stiffness: &stiffness, tolerance: 1e-13,
+            h, conjugates: &conjugates, origin: &origin, drive: &start.p, stiffness: &stiffness,
+            tolerance: &tolerance, max_rounds: 60,
         };
         let mut d = vec![Vector3::zeros(); n];
         let report = ConvexSolver::default().solve(&problem, &mut d, dense).unwrap();
@@ -191,9 +193,15 @@ proptest! {
             full.fixed_view_mut::<3, 3>(3 * i, 3 * i).copy_from(&stiffness.diagonal(i));
             stiffness.visit_row(i, |j, block| full.fixed_view_mut::<3, 3>(3 * i, 3 * j).copy_from(block));
         }
-        let (h, tolerance) = (0.02, 1e-12);
-        let problem = ConvexProblem { h, conjugates: &conjugates, drive: &start.p, stiffness: &stiffness, tolerance };
-        let dense_problem = ConvexProblem { h, conjugates: &conjugates, drive: &start.p, stiffness: &full, tolerance };
+        let (origin, tolerance) = (vec![Vector3::zeros(); n], vec![1e-12; n]);
+        let problem = ConvexProblem {
+            h: 0.02, conjugates: &conjugates, origin: &origin, drive: &start.p, stiffness: &stiffness,
+            tolerance: &tolerance, max_rounds: 60,
+        };
+        let dense_problem = ConvexProblem {
+            h: 0.02, conjugates: &conjugates, origin: &origin, drive: &start.p, stiffness: &full,
+            tolerance: &tolerance, max_rounds: 60,
+        };
         let mut solver = ConvexSolver::default();
         let mut d = [(); 3].map(|()| vec![Vector3::zeros(); n]);
         solver.solve(&problem, &mut d[0], dense).unwrap();

@@ -15,9 +15,10 @@
 //! stiff triangles keep the full stiffness.
 
 use crate::dihedral;
-use crate::element::{ElementModel, ElementSystem, Stiffness, batch};
+use crate::element::{ElementModel, ElementSystem, Stiffness, batch, chosen};
 use crate::force::{Force, Stage};
 use crate::law::Law;
+use crate::part::Part;
 use crate::shape_operator::{ShapeOperatorModel, hinge};
 use crate::solver::{
     ABSENT, BlockMatrix, BlockPattern, PatternBuilder, PatternError, StencilSlots,
@@ -59,6 +60,14 @@ struct Share {
 impl ShapeOperatorForce {
     /// The force for steps of about `h` (s); `mass` is that of the vertices (kg).
     pub(crate) fn new(model: ShapeOperatorModel, mass: &[f64], h: f64) -> Self {
+        let mut force = ShapeOperatorForce::unsorted(model);
+        let is_stiff = (0..force.hinges_of.len()).map(|e| !force.is_weak(e, mass, h)).collect();
+        force.set_stiff(is_stiff);
+        force
+    }
+
+    /// Without a list of what is stiff.
+    fn unsorted(model: ShapeOperatorModel) -> Self {
         let n = model.stencils().len();
         let mut force = ShapeOperatorForce {
             hinges: Vec::with_capacity(3 * n / 2),
@@ -72,7 +81,6 @@ impl ShapeOperatorForce {
             model,
         };
         force.find_hinges();
-        force.find_stiff(mass, h);
         force
     }
 
@@ -105,24 +113,24 @@ impl ShapeOperatorForce {
         }
     }
 
-    /// Lists the triangles whose bending is not weak against inertia in a step of `h`.
-    fn find_stiff(&mut self, mass: &[f64], h: f64) {
-        for e in 0..self.hinges_of.len() {
-            let lean = self.model.lean_stiffness(e, &self.model.law(e).at_rest());
-            let stencil = &self.model.stencils()[e];
-            let weak = (0..3).all(|k| {
-                let heights = self.model.heights(e, k);
-                let apexes = [stencil[(k + 2) % 3], stencil[3 + k]];
-                apexes.into_iter().zip(heights).filter(|(v, _)| *v != ABSENT).all(|(v, height)| {
-                    lean[k] * h * h <= LEAN_BELOW * mass[v as usize] * height * height
-                })
-            });
-            if !weak {
-                self.is_stiff[e] = true;
-                self.stiff.push(e as u32);
-                self.stiff_stencils.push(*stencil);
-            }
-        }
+    /// Whether the bending of a triangle is weak against inertia in a step of `h`.
+    fn is_weak(&self, e: usize, mass: &[f64], h: f64) -> bool {
+        let lean = self.model.lean_stiffness(e, &self.model.law(e).at_rest());
+        let stencil = &self.model.stencils()[e];
+        (0..3).all(|k| {
+            let heights = self.model.heights(e, k);
+            let apexes = [stencil[(k + 2) % 3], stencil[3 + k]];
+            apexes.into_iter().zip(heights).filter(|(v, _)| *v != ABSENT).all(|(v, height)| {
+                lean[k] * h * h <= LEAN_BELOW * mass[v as usize] * height * height
+            })
+        })
+    }
+
+    /// Lists the triangles that are stiff.
+    fn set_stiff(&mut self, is_stiff: Vec<bool>) {
+        self.stiff = (0..).zip(&is_stiff).filter(|(_, stiff)| **stiff).map(|(e, _)| e).collect();
+        self.stiff_stencils = chosen(self.model.stencils(), &self.stiff);
+        self.is_stiff = is_stiff;
     }
 
     fn angles(&self, x: &[World3]) -> Vec<f64> {
@@ -284,6 +292,16 @@ impl Force for ShapeOperatorForce {
         if !self.stiff.is_empty() {
             self.add_stiff(x, kind, stiffness);
         }
+    }
+
+    fn part(&self, part: &Part) -> Option<Box<dyn Force>> {
+        let (elements, stencils) = part.elements(self.model.stencils());
+        if elements.is_empty() {
+            return None;
+        }
+        let mut force = ShapeOperatorForce::unsorted(self.model.part(&elements, stencils));
+        force.set_stiff(chosen(&self.is_stiff, &elements));
+        Some(Box::new(force))
     }
 }
 

@@ -53,6 +53,10 @@ pub trait Contact: Send + Sync {
 
     /// How many contacts there are in this stage.
     fn n_touches(&self) -> usize;
+
+    /// Whether all that is not cloth stays, between these times (s), where it was at the end of the
+    /// last stage.
+    fn is_still(&self, times: [f64; 2]) -> bool;
 }
 
 /// Stiffness of a contact in units of the mass of what touches over h²: enough to stop a vertex that

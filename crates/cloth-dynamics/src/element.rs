@@ -2,6 +2,7 @@
 //! once, so that a new energy contains no parallel line.
 
 use crate::force::{Force, Stage};
+use crate::part::Part;
 use crate::solver::{
     ABSENT, BlockMatrix, BlockPattern, PatternBuilder, PatternError, StencilSlots,
 };
@@ -61,6 +62,12 @@ pub trait ElementModel<const N: usize>: Send + Sync {
 
     /// Gradient and stiffness into `out`, which may hold old values.
     fn system(&self, e: usize, x: &[World3; N], kind: Stiffness, out: &mut ElementSystem<N>);
+
+    /// The model of some of the elements, ascending, whose corners have new numbers.
+    #[must_use]
+    fn part(&self, elements: &[u32], stencils: Vec<[u32; N]>) -> Self
+    where
+        Self: Sized;
 }
 
 /// A [`Force`] made of the elements of one model.
@@ -95,7 +102,7 @@ impl<M: ElementModel<N>, const N: usize> Elements<M, N> {
     }
 }
 
-impl<M: ElementModel<N>, const N: usize> Force for Elements<M, N> {
+impl<M: ElementModel<N> + 'static, const N: usize> Force for Elements<M, N> {
     fn name(&self) -> &'static str {
         self.model.name()
     }
@@ -161,4 +168,17 @@ impl<M: ElementModel<N>, const N: usize> Force for Elements<M, N> {
             }
         }
     }
+
+    fn part(&self, part: &Part) -> Option<Box<dyn Force>> {
+        let (elements, stencils) = part.elements(self.model.stencils());
+        let some = !elements.is_empty();
+        some.then(|| {
+            Box::new(Elements::new(self.model.part(&elements, stencils))) as Box<dyn Force>
+        })
+    }
+}
+
+/// The entries of a list with one per element.
+pub(crate) fn chosen<T: Clone>(list: &[T], elements: &[u32]) -> Vec<T> {
+    elements.iter().map(|&e| list[e as usize].clone()).collect()
 }

@@ -1,6 +1,7 @@
 //! What the solver sees of the physics: potentials of the positions.
 
 use crate::element::Stiffness;
+use crate::part::Part;
 use crate::solver::{BlockMatrix, BlockPattern, PatternBuilder, PatternError};
 use mesh_core::World3;
 
@@ -53,4 +54,7 @@ pub trait Force: Send + Sync {
         gradient: &mut [World3],
         stiffness: &mut BlockMatrix,
     );
+
+    /// The same force on a part of the cloth; `None` if it has none there.
+    fn part(&self, part: &Part) -> Option<Box<dyn Force>>;
 }

@@ -5,7 +5,7 @@
 //! patterns (see `docs/decisions.md`).
 
 use crate::dihedral;
-use crate::element::{ElementModel, ElementSystem, Stiffness};
+use crate::element::{ElementModel, ElementSystem, Stiffness, chosen};
 use crate::fabric::{BendingModel, Fabric};
 use crate::force::Stage;
 use crate::law::Law;
@@ -88,5 +88,9 @@ impl ElementModel<4> for HingeModel {
                 }
             }
         }
+    }
+
+    fn part(&self, elements: &[u32], stencils: Vec<[u32; 4]>) -> Self {
+        HingeModel { stencils, stiffness: chosen(&self.stiffness, elements) }
     }
 }

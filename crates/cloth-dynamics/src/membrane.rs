@@ -12,7 +12,7 @@
 //! creeps. The predicted stress is what a solver with multipliers would use, and both agree at the
 //! solution.
 
-use crate::element::{ElementModel, ElementSystem, Stiffness};
+use crate::element::{ElementModel, ElementSystem, Stiffness, chosen};
 use crate::fabric::Fabric;
 use crate::force::Stage;
 use crate::law::{Law, Membrane, Response, project3};
@@ -196,6 +196,11 @@ impl ElementModel<3> for MembraneModel {
         out.stiffness[1][0] = k10;
         out.stiffness[2][0] = k20;
         out.stiffness[0][0] = -k10 - k20;
+    }
+
+    fn part(&self, elements: &[u32], stencils: Vec<[u32; 3]>) -> Self {
+        let rest = Arc::new(chosen(&self.rest, elements));
+        MembraneModel::new(&stencils, rest, self.fabrics.clone())
     }
 }
 

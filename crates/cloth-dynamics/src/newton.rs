@@ -13,8 +13,10 @@ use crate::solver::{LinearSolver, clear_fixed};
 use crate::system::System;
 use mesh_core::{World3, par};
 use nalgebra::Matrix3;
+use restrained::{Directions, Restrained};
 use std::time::Instant;
 
+pub(crate) mod restrained;
 #[cfg(test)]
 mod tests;
 
@@ -30,13 +32,30 @@ pub(crate) struct Inertia<'a> {
     pub time: f64,
     /// Vertices that do not move from where the start has them.
     pub fixed: &'a [bool],
+    /// Restrained kinetic energies in the place of the plain ones.
+    pub restrained: Option<Restrained<'a>>,
 }
 
 impl Inertia<'_> {
     fn potential(&self, system: &System, x: &[World3]) -> f64 {
-        let kinetic = par::sum(x.len(), |i| self.mass[i] * (x[i] - self.target[i]).norm_squared());
+        let kinetic = match &self.restrained {
+            None => {
+                let sum =
+                    par::sum(x.len(), |i| self.mass[i] * (x[i] - self.target[i]).norm_squared());
+                sum / (2.0 * self.h * self.h)
+            }
+            Some(restrained) => restrained.potential(self, x),
+        };
         let contact = system.contact.as_ref().map_or(0.0, |contact| contact.energy(x));
-        kinetic / (2.0 * self.h * self.h) + system.energy(x) + contact
+        kinetic + system.energy(x) + contact
+    }
+}
+
+impl Inertia<'_> {
+    /// Where a step leads to.
+    fn reach(&self, i: usize, x: &World3, step: &World3) -> World3 {
+        let to = x + step;
+        self.restrained.as_ref().map_or(to, |restrained| restrained.snapped(i, to))
     }
 }
 
@@ -57,6 +76,26 @@ const REST_STARTS: u32 = 7;
 /// Iterations are allowed up to this multiple of the limit while triangles are out of their strain
 /// limits.
 const LIMIT_PATIENCE: usize = 3;
+/// What an iteration finds.
+enum Found {
+    Direction(Direction),
+    /// The exact Hessian was too much for the solver.
+    TooExact,
+    /// Nothing is left to do.
+    Minimum,
+}
+
+/// A direction to go, and what is known of it.
+struct Direction {
+    step: Vec<World3>,
+    /// Slope of the potential along it (J).
+    slope: f64,
+    /// The minimum is near if it is short: else only forces at its end can tell.
+    is_telling: bool,
+    /// The matrix had to be made positive definite.
+    shifted: bool,
+}
+
 /// How often contacts are looked for that came up during the iterations.
 const MAX_LOOKS: usize = 2;
 
@@ -86,10 +125,13 @@ struct Newton<'a> {
     trial: Vec<World3>,
     lowest: Watchdog,
     kind: Stiffness,
+    directions: Directions,
     /// Residual (m/s) at which the exact Hessian was last found not to be positive definite; infinite
     /// if it was not.
     exact_failed_at: f64,
     converged: bool,
+    /// The last step was short.
+    is_near: bool,
     /// No descent is left within rounding.
     stuck: bool,
 }
@@ -117,8 +159,10 @@ pub(crate) fn minimise(
         trial: vec![World3::zeros(); x.len()],
         lowest: Watchdog::default(),
         kind: Stiffness::Projected,
+        directions: Directions::default(),
         exact_failed_at: f64::INFINITY,
         converged: false,
+        is_near: false,
         stuck: false,
         system,
         solver,
@@ -179,45 +223,35 @@ impl Newton<'_> {
     /// One linear solve and the step that it leads to; the last one is not made on trial. Without a
     /// step, and not counted, if the exact Hessian was too much for the solver.
     fn iterate(&mut self, is_last: bool) -> Result<(), SolveError> {
-        let (h, time, n) = (self.inertia.h, self.inertia.time, self.x.len());
-        let clock = Instant::now();
-        let mut rhs = assemble(self.system, self.inertia, &self.x, self.kind);
-        self.report.assembly_s += clock.elapsed().as_secs_f64();
-        if !rhs.iter().all(|g| g.iter().all(|c| c.is_finite())) {
-            return Err(SolveError::NotFinite { time, h });
-        }
-
-        let clock = Instant::now();
-        for g in &mut rhs {
-            *g = -*g;
-        }
-        let mut direction = vec![World3::zeros(); n];
-        let solved = self.solver.solve(&self.system.matrix, &rhs, &mut direction);
-        self.report.linear_s += clock.elapsed().as_secs_f64();
-        let linear = match solved {
-            Ok(linear) => linear,
-            // Conjugate gradients cannot shift a matrix that is not positive definite.
-            Err(_) if self.kind == Stiffness::Exact => {
+        let inertia = self.inertia;
+        let found = match &inertia.restrained {
+            None => self.direction()?,
+            Some(restrained) => self.restrained_direction(restrained)?,
+        };
+        let Direction { step, slope, is_telling, shifted } = match found {
+            Found::Direction(direction) => direction,
+            Found::TooExact => {
                 self.exact_failed_at = self.report.residual;
                 self.kind = Stiffness::Projected;
                 return Ok(());
             }
-            Err(source) => return Err(SolveError::Linear { time, source }),
+            Found::Minimum => {
+                self.converged = true;
+                return Ok(());
+            }
         };
-        self.report.note(&linear);
         self.report.iterations += 1;
 
         let clock = Instant::now();
-        let largest = direction.iter().map(|d| d.norm_squared()).fold(0.0, f64::max).sqrt();
-        let before = std::mem::replace(&mut self.report.residual, largest / h);
+        let largest = step.iter().map(|d| d.norm_squared()).fold(0.0, f64::max).sqrt();
+        let before = std::mem::replace(&mut self.report.residual, largest / self.inertia.h);
         // The step of a matrix that had to be shifted says nothing about how far it is to go.
-        let shifted = linear.shift > 0.0;
         let is_short = self.report.residual <= self.settings.tolerance && !shifted;
-        let slope = -par::sum(n, |i| rhs[i].dot(&direction[i]));
-        let is_full = self.advance(direction, slope, is_last);
+        let is_full = self.advance(step, slope, is_last);
         self.report.energy_s += clock.elapsed().as_secs_f64();
         let is_lower = self.lowest.age == 0;
-        self.converged = is_short && is_full && is_lower;
+        self.is_near = is_short && is_full && is_lower;
+        self.converged = self.is_near && is_telling;
 
         // Where cloth buckles, the projected Hessian is too stiff, and the last vertices would
         // creep; near the minimum the exact one is positive definite.
@@ -233,11 +267,41 @@ impl Newton<'_> {
         Ok(())
     }
 
+    /// The direction of Newton's method.
+    fn direction(&mut self) -> Result<Found, SolveError> {
+        let (h, time, n) = (self.inertia.h, self.inertia.time, self.x.len());
+        let clock = Instant::now();
+        let mut rhs = assemble(self.system, self.inertia, &self.x, self.kind);
+        self.report.assembly_s += clock.elapsed().as_secs_f64();
+        if !rhs.iter().all(|g| g.iter().all(|c| c.is_finite())) {
+            return Err(SolveError::NotFinite { time, h });
+        }
+
+        let clock = Instant::now();
+        for g in &mut rhs {
+            *g = -*g;
+        }
+        let mut step = vec![World3::zeros(); n];
+        let solved = self.solver.solve(&self.system.matrix, &rhs, &mut step);
+        self.report.linear_s += clock.elapsed().as_secs_f64();
+        let linear = match solved {
+            Ok(linear) => linear,
+            // Conjugate gradients cannot shift a matrix that is not positive definite.
+            Err(_) if self.kind == Stiffness::Exact => return Ok(Found::TooExact),
+            Err(source) => return Err(SolveError::Linear { time, source }),
+        };
+        self.report.note(&linear);
+        let slope = -par::sum(n, |i| rhs[i].dot(&step[i]));
+        let shifted = linear.shift > 0.0;
+        Ok(Found::Direction(Direction { step, slope, is_telling: true, shifted }))
+    }
+
     /// Makes the step; false if not in full.
     fn advance(&mut self, direction: Vec<World3>, slope: f64, is_last: bool) -> bool {
         let x = &self.x;
         self.system.predict(x, &direction);
-        par::fill(&mut self.trial, |i| x[i] + direction[i]);
+        let inertia = self.inertia;
+        par::fill(&mut self.trial, |i| inertia.reach(i, &x[i], &direction[i]));
         if self.lowest.age == 0 {
             self.lowest.phi = self.phi;
             self.lowest.slope = slope;
@@ -269,7 +333,8 @@ impl Newton<'_> {
             par::for_each(&mut lowest.direction, |_, d| *d *= 0.5);
             self.report.halvings += 1;
             self.system.predict(&lowest.x, &lowest.direction);
-            par::fill(&mut self.trial, |i| lowest.x[i] + lowest.direction[i]);
+            let inertia = self.inertia;
+            par::fill(&mut self.trial, |i| inertia.reach(i, &lowest.x[i], &lowest.direction[i]));
             self.phi = self.inertia.potential(self.system, &self.trial);
             if self.phi <= lowest.phi + SUFFICIENT * share * lowest.slope + noise(lowest.phi) {
                 std::mem::swap(&mut self.x, &mut self.trial);

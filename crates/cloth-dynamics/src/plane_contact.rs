@@ -98,4 +98,8 @@ impl Contact for PlaneContact {
     fn n_touches(&self) -> usize {
         self.inertia.len()
     }
+
+    fn is_still(&self, _: [f64; 2]) -> bool {
+        true
+    }
 }

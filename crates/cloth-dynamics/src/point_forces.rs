@@ -2,6 +2,7 @@
 
 use crate::element::Stiffness;
 use crate::force::{Force, Stage};
+use crate::part::Part;
 use crate::solver::{BlockMatrix, BlockPattern, PatternBuilder, PatternError};
 use mesh_core::{World3, par};
 use nalgebra::Matrix3;
@@ -47,6 +48,10 @@ impl Force for Gravity {
 
     fn add_system(&self, x: &[World3], _: Stiffness, gradient: &mut [World3], _: &mut BlockMatrix) {
         self.add_gradient(x, gradient);
+    }
+
+    fn part(&self, part: &Part) -> Option<Box<dyn Force>> {
+        Some(Box::new(Gravity::new(part.gather(&self.masses), self.acceleration)))
     }
 }
 
@@ -108,6 +113,11 @@ impl Force for MassDamping {
             *stiffness.diagonal_mut(i) += Matrix3::identity() * (rate / self.h);
         }
     }
+
+    fn part(&self, part: &Part) -> Option<Box<dyn Force>> {
+        let damping = MassDamping::new(part.gather(&self.rates));
+        damping.map(|damping| Box::new(damping) as Box<dyn Force>)
+    }
 }
 
 /// Springs that pull vertices to points: soft handles.
@@ -153,5 +163,18 @@ impl Force for Springs {
         for &(i, _, k) in &self.springs {
             *stiffness.diagonal_mut(i as usize) += Matrix3::identity() * k;
         }
+    }
+
+    fn part(&self, part: &Part) -> Option<Box<dyn Force>> {
+        Some(Box::new(Springs::of(part, &self.springs)))
+    }
+}
+
+impl Springs {
+    /// Those of the springs that pull a vertex of the part which answers.
+    pub(crate) fn of(part: &Part, springs: &[(u32, World3, f64)]) -> Springs {
+        let here = springs.iter().filter(|(i, ..)| part.answers(*i as usize));
+        let springs = here.map(|&(i, x, k)| (part.place(i as usize), x, k)).collect();
+        Springs { springs }
     }
 }

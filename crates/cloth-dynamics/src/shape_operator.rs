@@ -11,7 +11,7 @@
 //! At a free edge φ is whatever carries no moment across it: it is eliminated beforehand.
 
 use crate::dihedral;
-use crate::element::{ElementModel, ElementSystem, Stiffness};
+use crate::element::{ElementModel, ElementSystem, Stiffness, chosen};
 use crate::fabric::{BendingModel, Fabric};
 use crate::force::Stage;
 use crate::law::{Bending, Law, Response, project3};
@@ -309,6 +309,20 @@ impl ElementModel<6> for ShapeOperatorModel {
                     }
                 }
             }
+        }
+    }
+
+    fn part(&self, elements: &[u32], stencils: Vec<[u32; 6]>) -> Self {
+        ShapeOperatorModel {
+            curvature_t0: chosen(&self.curvature_t0, if self.damped { elements } else { &[] }),
+            curvature_from_angles: chosen(&self.curvature_from_angles, elements),
+            heights: chosen(&self.heights, elements),
+            triangles: chosen(&self.triangles, elements),
+            stencils,
+            rest: self.rest.clone(),
+            fabrics: self.fabrics.clone(),
+            damped: self.damped,
+            h: self.h,
         }
     }
 }

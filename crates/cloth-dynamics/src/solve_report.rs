@@ -50,6 +50,31 @@ pub struct SolveReport {
     pub touches: usize,
     /// Vertices whose way was shortened in the end, because something was in it.
     pub shortened: usize,
+    /// What restraint did, if there is any.
+    pub rest: RestReport,
+}
+
+/// What restraint did and saved. Sums over stages.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RestReport {
+    /// Stages under restraint, those slept through included.
+    pub stages: usize,
+    /// Stages slept through: nothing was evaluated, assembled or solved.
+    pub slept: usize,
+    /// Linear systems of restrained stages.
+    pub solves: usize,
+    /// Vertices in these, summed.
+    pub unknowns: usize,
+    /// Vertices that no force was evaluated on, summed over stages.
+    pub untouched: usize,
+    /// Vertices that woke because their momentum said so.
+    pub woken: usize,
+    /// Times that forces and matrix were built for a part of the cloth.
+    pub parts: usize,
+    /// Stages made again, because they moved more than had been thought.
+    pub redone: usize,
+    /// Vertices at rest whose momentum was cut to what may rest, in stages that did not converge.
+    pub cut: usize,
 }
 
 impl SolveReport {
@@ -69,12 +94,28 @@ impl SolveReport {
         self.contact_s += other.contact_s;
         self.touches += other.touches;
         self.shortened += other.shortened;
+        self.rest.add(&other.rest);
     }
 
     pub(crate) fn note(&mut self, linear: &LinearReport) {
         self.linear_iterations += linear.iterations;
         self.factorisations += usize::from(linear.refactored);
         self.analyses += usize::from(linear.analysed);
+    }
+}
+
+impl RestReport {
+    /// Adds another report.
+    pub fn add(&mut self, other: &RestReport) {
+        self.stages += other.stages;
+        self.slept += other.slept;
+        self.solves += other.solves;
+        self.unknowns += other.unknowns;
+        self.untouched += other.untouched;
+        self.woken += other.woken;
+        self.parts += other.parts;
+        self.redone += other.redone;
+        self.cut += other.cut;
     }
 }
 
@@ -114,6 +155,14 @@ pub enum SolveError {
     /// The contacts couple more vertices than the matrix can hold.
     #[error(transparent)]
     Pattern(#[from] PatternError),
+    /// A policy of restraint asks for a kinetic energy that implicit steps cannot have.
+    #[error("at time {time} s: {source}")]
+    Restraint {
+        /// Time at the start of the stage (s).
+        time: f64,
+        /// What is wrong.
+        source: arps::StepError,
+    },
     /// The linear solver failed.
     #[error("at time {time} s: {source}")]
     Linear {

@@ -7,7 +7,7 @@
 //! need a feasible start, which remeshing, moved handles and scenes cannot promise, and takes
 //! Newton's method three times as many iterations.
 
-use crate::element::{ElementModel, ElementSystem, Stiffness};
+use crate::element::{ElementModel, ElementSystem, Stiffness, chosen};
 use crate::fabric::{Fabric, StrainLimits};
 use crate::force::Stage;
 use crate::rest::RestTriangle;
@@ -93,6 +93,12 @@ impl Limited {
             .collect();
         let stencils = limited.iter().map(|&t| triangles[t as usize]).collect();
         (!limited.is_empty()).then_some(Limited { stencils, triangles: limited, rest, fabrics })
+    }
+
+    /// Some of them, whose corners have new numbers.
+    pub(crate) fn part(&self, elements: &[u32], stencils: Vec<[u32; 3]>) -> Limited {
+        let (rest, fabrics) = (self.rest.clone(), self.fabrics.clone());
+        Limited { stencils, triangles: chosen(&self.triangles, elements), rest, fabrics }
     }
 
     pub(crate) fn element(&self, e: usize) -> (&RestTriangle, &StrainLimits) {
@@ -237,6 +243,11 @@ impl ElementModel<3> for StrainLimitModel {
                 }
             }
         }
+    }
+
+    fn part(&self, elements: &[u32], stencils: Vec<[u32; 3]>) -> Self {
+        let limited = self.limited.part(elements, stencils);
+        StrainLimitModel { limited, from: Vec::new(), step: Vec::new() }
     }
 }
 

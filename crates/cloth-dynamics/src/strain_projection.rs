@@ -8,6 +8,7 @@
 //! Provot1995). Momentum is kept to rounding, and the cost is that of the triangles out of bounds.
 
 use crate::fabric::{Fabric, StrainLimits};
+use crate::part::Part;
 use crate::rest::RestTriangle;
 use crate::strain_limit::{Limited, is_free, orthonormal, principal_stretches};
 use mesh_core::{World3, par};
@@ -70,6 +71,13 @@ impl StrainProjection {
     ) -> Option<Self> {
         let limited = Limited::new(triangles, rest, fabrics)?;
         Some(StrainProjection { limited, incidence: None })
+    }
+
+    /// The projection of the triangles in a part of the cloth; `None` if none of them has limits.
+    pub(crate) fn part(&self, part: &Part) -> Option<Self> {
+        let (elements, stencils) = part.elements(&self.limited.stencils);
+        let limited = self.limited.part(&elements, stencils);
+        (!elements.is_empty()).then_some(StrainProjection { limited, incidence: None })
     }
 
     /// Brings triangles that are out of bounds back, by moving their vertices; `mass` is infinite

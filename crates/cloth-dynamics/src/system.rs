@@ -6,10 +6,14 @@ use crate::element::{Elements, Stiffness};
 use crate::fabric::Fabric;
 use crate::force::{Force, Stage};
 use crate::hinge::HingeModel;
+use crate::integrator::Step;
 use crate::membrane::MembraneModel;
+use crate::part::Part;
 use crate::point_forces::{Gravity, MassDamping, Springs};
 use crate::rest::RestTriangle;
+use crate::resting::{Resting, RestingPolicy};
 use crate::shape_operator::ShapeOperatorModel;
+use crate::solve_report::{RestReport, SolveReport};
 use crate::solver::{BlockMatrix, BlockPattern, PatternBuilder, PatternError};
 use crate::strain_limit::StrainLimitModel;
 use crate::strain_projection::StrainProjection;
@@ -53,6 +57,8 @@ pub struct System {
     pub(crate) accepts_rise: bool,
     /// Brings back what a step leaves out of its strain limits, if there are any.
     pub(crate) limits: Option<StrainProjection>,
+    /// Who rests, if anybody may.
+    pub(crate) resting: Option<Box<Resting>>,
 }
 
 impl std::fmt::Debug for System {
@@ -103,7 +109,15 @@ impl System {
             forces.push(Box::new(damping));
         }
 
-        let mut pattern = PatternBuilder::new(mesh.n_vertices());
+        System::of(mesh.n_vertices(), forces, limits)
+    }
+
+    fn of(
+        n_vertices: usize,
+        mut forces: Vec<Box<dyn Force>>,
+        limits: Option<StrainProjection>,
+    ) -> Result<System, PatternError> {
+        let mut pattern = PatternBuilder::new(n_vertices);
         for force in &forces {
             force.couple(&mut pattern)?;
         }
@@ -120,7 +134,67 @@ impl System {
             accepts_rise: true,
             limits,
             contact: None,
+            resting: None,
         })
+    }
+
+    /// The forces of a part of the cloth, without springs and contact. On vertices that answer they
+    /// have the same bits as in the whole.
+    ///
+    /// # Errors
+    /// If the matrix would be too large for its indices.
+    pub fn part(&self, part: &Part) -> Result<System, PatternError> {
+        let forces = self.forces.iter().filter_map(|force| force.part(part)).collect();
+        let limits = self.limits.as_ref().and_then(|limits| limits.part(part));
+        System::of(part.vertices().len(), forces, limits)
+    }
+
+    /// Lets vertices rest as a policy says. Velocities of the cloth are then momenta over mass.
+    pub fn set_restraint(&mut self, policy: RestingPolicy) {
+        self.resting = Some(Box::new(Resting::new(policy, self)));
+    }
+
+    /// Brings the velocities of vertices that sleep up to a time (s): between steps they are those at
+    /// the time at which the vertex went to sleep.
+    pub fn settle(&self, cloth: &mut ClothState, time: f64) {
+        if let Some(resting) = &self.resting {
+            resting.settle(&mut cloth.v, &cloth.m, time);
+        }
+    }
+
+    /// The pattern of the forces, without contact.
+    pub(crate) fn mesh_pattern(&self) -> &BlockPattern {
+        &self.mesh_pattern
+    }
+
+    /// Whether a step changes nothing, because all that could move sleeps; `stages` are the ends of its
+    /// stages (s).
+    pub(crate) fn sleeps(
+        &mut self,
+        constraints: &dyn Fn(f64) -> Constraints,
+        step: Step,
+        stages: &[f64],
+    ) -> Option<SolveReport> {
+        let (contact, resting) = (self.contact.as_deref(), self.resting.as_mut()?);
+        resting.sleeps(contact, constraints, step, stages).then(|| SolveReport {
+            stages: stages.len(),
+            rest: RestReport {
+                stages: stages.len(),
+                slept: stages.len(),
+                untouched: stages.len() * self.mesh_pattern.n_vertices(),
+                ..RestReport::default()
+            },
+            ..SolveReport::default()
+        })
+    }
+
+    /// Gradient of all forces, contact among them (N). Leaves the matrix without meaning.
+    pub(crate) fn gradient_with_contact(&mut self, x: &[World3]) -> Vec<World3> {
+        let mut gradient = self.gradient(x);
+        if let Some(contact) = &self.contact {
+            contact.add_system(x, &mut gradient, &mut self.matrix);
+        }
+        gradient
     }
 
     /// Gives the cloth contact. Steps then keep apart what is apart.

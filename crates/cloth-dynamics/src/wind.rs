@@ -114,4 +114,8 @@ impl ElementModel<3> for WindModel {
         out.gradient = self.gradient(e, x);
         out.stiffness = [[k * (sail.area / (9.0 * self.h)); 3]; 3];
     }
+
+    fn part(&self, _: &[u32], stencils: Vec<[u32; 3]>) -> Self {
+        WindModel::new(&stencils, self.wind)
+    }
 }

@@ -7,7 +7,7 @@ use serde::ser::{SerializeMap, Serializer};
 use serde::{Deserialize, Serialize};
 
 use crate::record::{FLUID, OBSTACLES, RunError};
-use crate::report::{FluidSummary, FrameReport};
+use crate::report::{FluidSummary, FrameReport, RestraintSummary};
 
 /// Whether a recording is whole.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -63,7 +63,7 @@ impl Spread {
 type Figure = (&'static str, fn(&FrameReport) -> f64);
 
 /// The figures of [`Info::totals`], in the order shown.
-const FIGURES: [Figure; 24] = [
+const FIGURES: [Figure; 31] = [
     ("vertices", |r| r.vertices as f64),
     ("faces", |r| r.faces as f64),
     ("substeps", |r| f64::from(r.substeps)),
@@ -80,6 +80,13 @@ const FIGURES: [Figure; 24] = [
     ("flips", |r| r.remesh.map_or(0.0, |m| m.flips as f64)),
     ("collapses", |r| r.remesh.map_or(0.0, |m| m.collapses as f64)),
     ("kinetic_energy_j", |r| r.kinetic_energy_j),
+    ("active", |r| rest(r, |s| s.active)),
+    ("transition", |r| rest(r, |s| s.transition)),
+    ("resting", |r| rest(r, |s| s.resting)),
+    ("stages_slept", |r| rest(r, |s| s.stages_slept)),
+    ("solves", |r| rest(r, |s| s.solves)),
+    ("unknowns", |r| rest(r, |s| s.unknowns)),
+    ("woken", |r| rest(r, |s| s.woken)),
     ("seconds.total", |r| r.seconds.total),
     ("seconds.build", |r| r.seconds.build),
     ("seconds.assembly", |r| r.seconds.assembly),
@@ -116,6 +123,11 @@ const FLUID_FIGURES: [FluidFigure; 20] = [
     ("fluid.seconds.force", |f| f.seconds.force),
     ("fluid.seconds.changes", |f| f.seconds.changes),
 ];
+
+/// A number of the restraint of a frame; zero where nothing is restrained.
+fn rest(report: &FrameReport, of: fn(&RestraintSummary) -> usize) -> f64 {
+    report.restraint.as_ref().map_or(0.0, |summary| of(summary) as f64)
+}
 
 /// What a recording tells about its run. As JSON an object with these keys; `totals` is an object
 /// from the name of a figure, such as `faces` or `seconds.total`, to its [`Spread`].

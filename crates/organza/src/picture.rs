@@ -64,8 +64,10 @@ pub fn draw_frame(
     sight: Option<&Sight>,
 ) -> Result<Image, RenderError> {
     let fluid = frame.fluid.as_ref().map(|particles| beads.draw(particles, options.colouring));
-    let paint = |garment| options.colouring.of(garment, frame.index, sight);
-    let paints: Vec<_> = frame.garments.iter().map(paint).collect();
+    let states = |k: usize| frame.report.get("restraint")?.get("states")?.get(k)?.as_str();
+    let garments = frame.garments.iter().enumerate();
+    let paint = |(k, garment)| options.colouring.of(garment, states(k), frame.index, sight);
+    let paints: Vec<_> = garments.map(paint).collect();
     let edges = sight.filter(|_| options.frustum).map(|sight| sight.frustum(frame));
     let garments = frame.garments.iter().zip(&paints).map(|(garment, paint)| Surface {
         points: &garment.points,

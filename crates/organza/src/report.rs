@@ -157,6 +157,42 @@ impl ViewSummary {
     }
 }
 
+/// What restraint did in a frame, and who rests at its end.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RestraintSummary {
+    /// Vertices with full dynamics.
+    pub active: usize,
+    /// Vertices that move, but slower than their momentum.
+    pub transition: usize,
+    /// Vertices that stand still.
+    pub resting: usize,
+    /// Implicit stages.
+    pub stages: usize,
+    /// Stages slept through: nothing was evaluated, assembled or solved.
+    pub stages_slept: usize,
+    /// Linear systems of the others.
+    pub solves: usize,
+    /// Vertices in these, summed.
+    pub unknowns: usize,
+    /// Vertices on which no force was evaluated, summed over stages.
+    pub untouched: usize,
+    /// Vertices that woke because their momentum or contact said so.
+    pub woken: usize,
+    /// Times that forces were built for a part of the cloth.
+    pub parts_built: usize,
+    /// Stages made again with a larger part.
+    pub stages_redone: usize,
+    /// Restrained kinetic energy and potential energy, that of contact left out, at the end of the steps
+    /// (J).
+    pub energy_j: f64,
+    /// Momenta at rest that were cut, in stages that did not converge.
+    pub momenta_cut: usize,
+    /// What the vertices of every garment do in their order, each letter after how often it follows
+    /// itself: `a`ctive, in `t`ransition, `r`esting, as in `12r3t`.
+    pub states: Vec<String>,
+}
+
 /// Report of one frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrameReport {
@@ -210,7 +246,10 @@ pub struct FrameReport {
     /// The fluid, if the scene has one.
     #[serde(default)]
     pub fluid: Option<FluidSummary>,
-    /// Kinetic energy of the cloth (J).
+    /// Who rests, if anything may.
+    #[serde(default)]
+    pub restraint: Option<RestraintSummary>,
+    /// Kinetic energy of the cloth, the restrained one where anything may rest (J).
     pub kinetic_energy_j: f64,
     /// Potential energy of fabrics, gravity and springs at the end of the steps, before remeshing (J);
     /// absent in old recordings.
@@ -245,6 +284,7 @@ impl FrameReport {
         stretch: StretchRange,
         seconds: Seconds,
     ) -> FrameReport {
+        let (kinetic_energy_j, restraint) = world.kinetic_energy(&solve.rest);
         FrameReport {
             frame: world.frame,
             time_s: world.time(),
@@ -275,8 +315,9 @@ impl FrameReport {
             }),
             view: remeshed.and_then(|r| r.view),
             fluid: None,
+            restraint,
             // A sum of nothing is -0.
-            kinetic_energy_j: world.cloth.kinetic_energy() + 0.0,
+            kinetic_energy_j: kinetic_energy_j + 0.0,
             potential_energy_j: Some(world.potential_energy_j),
             skipped: world.skipped(),
             seconds,

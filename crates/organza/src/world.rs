@@ -2,6 +2,7 @@
 
 mod bodies;
 mod flow;
+mod rest;
 mod tangled;
 #[cfg(test)]
 mod tests;
@@ -12,7 +13,7 @@ use crate::fluid::Water;
 use crate::handles::{Handles, by_name};
 use crate::obstacle::Obstacle;
 use crate::remeshing::Remeshing;
-use crate::report::{FrameReport, Seconds, StretchRange};
+use crate::report::{FrameReport, Seconds};
 use crate::scene::Loaded;
 use crate::scene::format::{Integrator, LinearSolver as Method};
 use bodies::{Bodies, appearing_in_cloth};
@@ -24,6 +25,7 @@ use cloth_dynamics::{
 use collision::SurfaceError;
 use mesh_core::{ClothState, World3};
 use remesh::SizingField;
+use rest::{Measured, Restraints};
 use std::sync::Arc;
 use std::time::Instant;
 use tangled::Tangled;
@@ -104,6 +106,10 @@ pub struct World {
     newton: NewtonSettings,
     solver: Box<dyn LinearSolver>,
     remeshing: Option<Remeshing>,
+    /// Who may rest, if anybody may.
+    restraints: Option<Restraints>,
+    /// Of the last frame; the same as long as all sleeps.
+    measured: Option<Measured>,
     /// What is worked out once per mesh; absent after the mesh has changed.
     prepared: Option<Prepared>,
     /// At the last frame, before it was remeshed (J).
@@ -197,6 +203,8 @@ impl World {
                 tolerance: scene.newton.tolerance,
             },
             solver: solver.build(settings),
+            restraints: Restraints::new(scene),
+            measured: None,
             prepared: None,
             potential_energy_j: 0.0,
         };
@@ -205,7 +213,7 @@ impl World {
             world.warnings.push(World::tangle_warning("in the initial state", &crossings));
         }
         world.prepare().map_err(|e| BuildError::TooLarge(e.to_string()))?;
-        world.measure_energy();
+        world.measure(0.0);
         Ok(world)
     }
 
@@ -263,11 +271,23 @@ impl World {
             self.step(Step { time, h }, frame, 0, &mut solve, &mut retries, &mut seconds)?;
         }
         let fluid = self.move_fluid(frame, &mut seconds)?;
-        let stretch = StretchRange::of(&self.cloth);
-        self.measure_energy();
+        // Where all has slept, nothing has changed that could be measured or remeshed.
+        let slept = solve.rest.slept > 0 && solve.rest.slept == solve.stages;
+        let looks = self.remeshing.as_ref().is_some_and(Remeshing::looks);
+        let end = frame as f64 * self.frame_s;
+        if let Some(prepared) = &self.prepared {
+            prepared.system.settle(&mut self.cloth, end);
+        }
+        let measured = match self.measured.filter(|_| slept) {
+            Some(measured) => measured,
+            None => self.measure(end),
+        };
+        self.measured = Some(measured);
         let mut remeshed = None;
         let mut crossings = None;
-        if let Some(remeshing) = &self.remeshing {
+        if slept && !looks {
+            // What passes through something is led out of it and does not sleep.
+        } else if let Some(remeshing) = &self.remeshing {
             let (before, next) = (self.cloth.mesh.uids().to_vec(), self.cloth.mesh.next_uid());
             let keep = self.handles.names();
             let error = |source| StepError::Remesh { frame, source };
@@ -320,8 +340,18 @@ impl World {
         let (substeps, remeshed) = (n_steps, remeshed.as_ref());
         let crossings = self.contact.map(|_| crossings.map_or(0, |crossings| crossings.n));
         let mut report = FrameReport::new(
-            self, substeps, retries, &solve, remeshed, crossings, stretch, seconds,
+            self,
+            substeps,
+            retries,
+            &solve,
+            remeshed,
+            crossings,
+            measured.stretch,
+            seconds,
         );
+        if let Some(restraint) = &mut report.restraint {
+            restraint.energy_j = measured.energy;
+        }
         report.yielded = yielded;
         report.fluid = fluid;
         report.warnings = std::mem::take(&mut self.tangled.warnings);
@@ -394,7 +424,9 @@ impl World {
         let end = step.time + step.h;
         let changed = self.bodies.update(&self.obstacles, end);
         if changed.map_err(|e| StepError::TooLarge { frame, message: e.to_string() })? {
-            self.prepared = None;
+            if let Some(prepared) = self.prepared.take() {
+                prepared.system.settle(&mut self.cloth, step.time);
+            }
             let (times, time) = ([step.time, end], step.time);
             let found = appearing_in_cloth(&self.obstacles, &self.cloth, settings, times);
             if let Some((obstacle, crossings)) = found {
@@ -411,12 +443,6 @@ impl World {
         let time = frame as f64 * self.frame_s;
         let settings = self.contact.as_ref()?;
         Crossings::find(&self.cloth, self.bodies.surface.as_ref(), settings, time)
-    }
-
-    fn measure_energy(&mut self) {
-        if let Some(prepared) = &mut self.prepared {
-            self.potential_energy_j = prepared.system.energy_at_rest(&self.cloth.x);
-        }
     }
 
     /// Builds forces, contact, matrix and names if the mesh has changed.
@@ -437,6 +463,9 @@ impl World {
                     contact
                 };
                 system.set_contact(Box::new(contact));
+            }
+            if let Some(restraints) = &self.restraints {
+                system.set_restraint(restraints.policy(&self.cloth, &self.garments));
             }
             self.prepared = Some(Prepared { system, names: by_name(&self.cloth.mesh) });
         }
@@ -482,6 +511,7 @@ impl World {
         note(self.handles.list().is_empty(), "handles: none in the scene");
         note(self.fluid.is_none(), "fluid: none in the scene");
         note(self.contact.is_none(), "contact: none in the scene");
+        note(self.restraints.is_none(), "restraint: all of the cloth always moves");
         let is_free = self.contact.is_some() && !self.tangled.was_at_work;
         note(is_free, "untangling: nothing passes through anything");
         skipped

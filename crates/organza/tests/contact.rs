@@ -62,6 +62,7 @@ fn ball(
     }
     let surface = Surface::new(x.len(), &triangles).unwrap();
     Obstacles {
+        moves: true,
         surface,
         friction: vec![friction; x.len()],
         thickness: vec![None; x.len()],
@@ -195,6 +196,7 @@ fn cloth_slips_on_an_incline_where_the_angle_of_friction_is_passed() {
             let plane: Vec<World3> =
                 corners.iter().map(|[x, y]| turn * World3::new(*x, *y, 0.0)).collect();
             let obstacles = Obstacles {
+                moves: true,
                 surface: Surface::new(4, &[[0, 1, 2], [0, 2, 3]]).unwrap(),
                 friction: vec![mu; 4],
                 thickness: vec![None; 4],
@@ -234,6 +236,7 @@ fn cylinder(r: f64, friction: f64) -> Obstacles {
         })
         .collect();
     Obstacles {
+        moves: true,
         surface: Surface::new(x.len(), &triangles).unwrap(),
         friction: vec![friction; x.len()],
         thickness: vec![None; x.len()],

@@ -233,13 +233,12 @@ fn complaints_about_set_values_name_the_argument() {
 
 #[test]
 fn what_is_not_supported_is_an_error_or_a_warning() {
-    let text =
-        with("cameras: [{}], restraint: true, morphs: null, fluids: [],", "plasticity: {yield: 1}");
+    let text = with("cameras: [{}], morphs: null,", "plasticity: {yield: 1}");
     let errors = errors_of(text.as_bytes(), &[]);
     assert_eq!(
         errors.to_string(),
         "s.json5:1:13: cameras: not supported yet: several cameras\n\
-         s.json5:1:28: restraint: not supported yet: adaptively restrained dynamics\n\
+         s.json5:1:28: morphs: not supported yet: morphs\n\
          s.json5:2:40: cloths[0].plasticity: not supported yet: plastic deformation\n\
          use --allow-unsupported to run without what is not supported yet"
     );

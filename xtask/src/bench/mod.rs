@@ -5,6 +5,7 @@
 //! [`Report`].
 
 mod arcsim;
+mod arps;
 mod baseline;
 mod child;
 mod contact;
@@ -66,6 +67,7 @@ const BENCHMARKS: &[Benchmark] = &[
     flag::BENCHMARK,
     contact::BENCHMARK,
     view::BENCHMARK,
+    arps::BENCHMARK,
     sph::BENCHMARK,
     pareto::BENCHMARK,
     stability::BENCHMARK,

@@ -1,6 +1,6 @@
 //! Implicit Euler: first order, strongly damped.
 
-use super::{StageStart, Step, TimeIntegrator, solve_stage};
+use super::{StageEnd, StageStart, Step, TimeIntegrator, solve_stage};
 use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
 use crate::solver::LinearSolver;
 use crate::system::{Constraints, System};
@@ -21,6 +21,10 @@ impl TimeIntegrator for ImplicitEuler {
         Step { time, h }: Step,
     ) -> Result<SolveReport, SolveError> {
         let (time_t0, time) = (time, time + h);
+        if let Some(report) = system.sleeps(constraints, Step { time: time_t0, h }, &[time]) {
+            return Ok(report);
+        }
+        system.settle(cloth, time_t0);
         let start = StageStart {
             x_t0: &cloth.x,
             base: &cloth.x,
@@ -30,11 +34,8 @@ impl TimeIntegrator for ImplicitEuler {
             time,
             constraints: constraints(time),
         };
-        let (x, report) = solve_stage(cloth, system, solver, settings, start)?;
-        for ((v, x_t1), x_t0) in cloth.v.iter_mut().zip(&x).zip(&cloth.x) {
-            *v = (x_t1 - x_t0) / h;
-        }
-        cloth.x = x;
+        let StageEnd { x, v, report } = solve_stage(cloth, system, solver, settings, &start)?;
+        (cloth.x, cloth.v) = (x, v);
         Ok(report)
     }
 }

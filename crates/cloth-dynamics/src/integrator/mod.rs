@@ -42,35 +42,65 @@ pub trait TimeIntegrator: Send {
 }
 
 /// Everything an implicit stage starts from.
-struct StageStart<'a> {
-    x_t0: &'a [World3],
+pub(crate) struct StageStart<'a> {
+    pub(crate) x_t0: &'a [World3],
     /// Velocity is (x − base)/h.
-    base: &'a [World3],
-    /// Velocity (m/s) that the stage would have without forces.
-    velocity: &'a [World3],
-    h: f64,
+    pub(crate) base: &'a [World3],
+    /// Velocity (m/s) that the stage would have without forces; of restrained vertices, momentum over
+    /// mass.
+    pub(crate) velocity: &'a [World3],
+    pub(crate) h: f64,
     /// When the cloth is at `x_t0` (s).
-    time_t0: f64,
+    pub(crate) time_t0: f64,
     /// End of the stage (s).
-    time: f64,
-    constraints: Constraints,
+    pub(crate) time: f64,
+    pub(crate) constraints: Constraints,
 }
 
-/// Solves one stage; returns the new positions.
+/// What a stage leads to.
+pub(crate) struct StageEnd {
+    /// Positions (m).
+    pub(crate) x: Vec<World3>,
+    /// Velocities (m/s); of restrained vertices, momentum over mass.
+    pub(crate) v: Vec<World3>,
+    pub(crate) report: SolveReport,
+}
+
+/// Solves one stage.
 fn solve_stage(
     cloth: &ClothState,
     system: &mut System,
     solver: &mut dyn LinearSolver,
     settings: &NewtonSettings,
-    start: StageStart<'_>,
-) -> Result<(Vec<World3>, SolveReport), SolveError> {
-    let StageStart { x_t0, base, velocity, h, time_t0, time, constraints } = start;
+    start: &StageStart<'_>,
+) -> Result<StageEnd, SolveError> {
+    let Some(mut resting) = system.resting.take() else {
+        return plain_stage(cloth, system, solver, settings, start);
+    };
+    let end = resting.stage(cloth, system, solver, settings, start);
+    if end.is_err() {
+        // The next try knows nothing of this one.
+        resting.wake_all();
+    }
+    system.resting = Some(resting);
+    end
+}
+
+/// Solves one stage in which nothing is restrained.
+pub(crate) fn plain_stage(
+    cloth: &ClothState,
+    system: &mut System,
+    solver: &mut dyn LinearSolver,
+    settings: &NewtonSettings,
+    start: &StageStart<'_>,
+) -> Result<StageEnd, SolveError> {
+    let &StageStart { x_t0, base, velocity, h, time_t0, time, ref constraints } = start;
     system.begin(Stage { x_t0, base, h });
-    system.springs.springs = constraints.springs;
+    system.springs.springs.clone_from(&constraints.springs);
     let mut target: Vec<World3> = base.iter().zip(velocity).map(|(x, v)| x + v * h).collect();
     let mut resting = x_t0.to_vec();
     let mut fixed = vec![false; x_t0.len()];
-    for (i, x) in constraints.fixed {
+    for &(i, x) in &constraints.fixed {
         let i = i as usize;
         fixed[i] = true;
         target[i] = x;
@@ -83,8 +113,10 @@ fn solve_stage(
         system.make_room_for_contact()?;
     }
     let contact_s = clock.elapsed().as_secs_f64();
-    let inertia = Inertia { mass: &cloth.m, target: &target, h, time, fixed: &fixed };
+    let inertia =
+        Inertia { mass: &cloth.m, target: &target, h, time, fixed: &fixed, restrained: None };
     let (x, mut report) = minimise(system, solver, &inertia, &starts, settings)?;
     report.contact_s += contact_s;
-    Ok((x, report))
+    let v = x.iter().zip(base).map(|(x, base)| (x - base) / h).collect();
+    Ok(StageEnd { x, v, report })
 }

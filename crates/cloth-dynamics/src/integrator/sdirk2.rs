@@ -11,7 +11,7 @@
 //! forces of the old state, which remeshing or a new contact may just have thrown off balance, and
 //! unlike BDF2 it carries no history across them.
 
-use super::{StageStart, Step, TimeIntegrator, solve_stage};
+use super::{StageEnd, StageStart, Step, TimeIntegrator, solve_stage};
 use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
 use crate::solver::LinearSolver;
 use crate::system::{Constraints, System};
@@ -34,6 +34,11 @@ impl TimeIntegrator for Sdirk2 {
         Step { time, h }: Step,
     ) -> Result<SolveReport, SolveError> {
         let (h_stage, h_rest) = (GAMMA * h, (1.0 - GAMMA) * h);
+        let stages = [time + h_stage, time + h];
+        if let Some(report) = system.sleeps(constraints, Step { time, h }, &stages) {
+            return Ok(report);
+        }
+        system.settle(cloth, time);
         let start = StageStart {
             x_t0: &cloth.x,
             base: &cloth.x,
@@ -43,13 +48,11 @@ impl TimeIntegrator for Sdirk2 {
             time: time + h_stage,
             constraints: constraints(time + h_stage),
         };
-        let (x_1, mut report) = solve_stage(cloth, system, solver, settings, start)?;
+        let StageEnd { x: x_1, v: v_1, mut report } =
+            solve_stage(cloth, system, solver, settings, &start)?;
 
-        let velocity = |x: &[World3], base: &[World3]| -> Vec<World3> {
-            x.iter().zip(base).map(|(x, b)| (x - b) / h_stage).collect()
-        };
-        let v_1 = velocity(&x_1, &cloth.x);
-        let base: Vec<World3> = cloth.x.iter().zip(&v_1).map(|(x, v)| x + v * h_rest).collect();
+        let moved = cloth.x.iter().zip(&x_1);
+        let base: Vec<World3> = moved.map(|(x, x_1)| x + (x_1 - x) / h_stage * h_rest).collect();
         let free: Vec<World3> = cloth
             .v
             .iter()
@@ -67,10 +70,10 @@ impl TimeIntegrator for Sdirk2 {
             time: time + h,
             constraints: held,
         };
-        let (x_2, second) = solve_stage(cloth, system, solver, settings, start)?;
+        let StageEnd { x: x_2, v: mut v_2, report: second } =
+            solve_stage(cloth, system, solver, settings, &start)?;
         report.add(&second);
 
-        let mut v_2 = velocity(&x_2, &base);
         for i in fixed {
             // The stages do not apply to a prescribed path: its mean velocity does.
             v_2[i] = (x_2[i] - cloth.x[i]) / h;

@@ -69,6 +69,32 @@ impl BlockMatrix {
         self.blocks[slot] += block;
     }
 
+    /// The matrix of some of the vertices, see [`BlockPattern::restricted`].
+    pub(crate) fn restricted(&self, pattern: Arc<BlockPattern>, slots: &[u32]) -> Self {
+        let blocks = slots.iter().map(|&slot| self.blocks[slot as usize]).collect();
+        Self { pattern, blocks }
+    }
+
+    /// For each vertex, the sum of the absolute values of all that its row of A x is summed from.
+    pub(crate) fn multiply_abs(&self, x: &[Vector3<f64>], y: &mut [f64]) {
+        y.fill(0.0);
+        for j in 0..self.n_vertices() {
+            for slot in self.pattern.column(j) {
+                let i = self.pattern.rows()[slot] as usize;
+                let block = &self.blocks[slot];
+                y[i] += (block * x[j]).abs().sum();
+                if i != j {
+                    y[j] += block.tr_mul(&x[i]).abs().sum();
+                }
+            }
+        }
+    }
+
+    /// The block of a slot.
+    pub fn block(&self, slot: usize) -> &Matrix3<f64> {
+        &self.blocks[slot]
+    }
+
     /// The diagonal block of vertex `i`.
     pub fn diagonal(&self, i: usize) -> &Matrix3<f64> {
         &self.blocks[self.pattern.diagonal_slot(i)]

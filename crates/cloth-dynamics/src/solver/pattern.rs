@@ -200,6 +200,23 @@ impl BlockPattern {
         (0..self.n_vertices()).flat_map(below).collect()
     }
 
+    /// The pattern of some of the vertices (ascending) and the slot here of each of its blocks; `place`
+    /// is a vertex's place among them, or [`usize::MAX`].
+    pub(crate) fn restricted(&self, vertices: &[usize], place: &[usize]) -> (Self, Vec<u32>) {
+        let (mut col_ptr, mut rows, mut slots) = (vec![0], Vec::new(), Vec::new());
+        for &j in vertices {
+            for slot in self.column(j) {
+                let row = place[self.rows[slot] as usize];
+                if row != usize::MAX {
+                    rows.push(row as u32);
+                    slots.push(slot as u32);
+                }
+            }
+            col_ptr.push(rows.len() as u32);
+        }
+        (BlockPattern { col_ptr, rows }, slots)
+    }
+
     /// The slots of column `j`.
     pub(super) fn column(&self, j: usize) -> std::ops::Range<usize> {
         self.col_ptr[j] as usize..self.col_ptr[j + 1] as usize

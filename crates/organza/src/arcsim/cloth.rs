@@ -73,6 +73,7 @@ pub(super) fn translate(
         initial_velocity: velocity.and_then(|v| v.linear).unwrap_or_default(),
         initial_spin: spin,
         remeshing,
+        restraint: None,
     })
 }
 

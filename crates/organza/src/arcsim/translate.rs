@@ -148,6 +148,7 @@ fn translate(
         camera: extras.camera,
         shots: Vec::new(),
         view: None,
+        restraint: None,
         recording: extras.recording.unwrap_or_default(),
     })
 }

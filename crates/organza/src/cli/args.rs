@@ -251,6 +251,8 @@ pub(crate) enum Color {
     Visibility,
     /// Speed of particles, from violet at rest to yellow at the greatest of the recording
     Speed,
+    /// Who rests: blue moves freely, green in transition, red stands still
+    Restraint,
 }
 
 fn size(text: &str) -> Result<Size, String> {

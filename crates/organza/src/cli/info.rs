@@ -22,7 +22,7 @@ pub(crate) fn run(args: &args::Info) -> Result<(), Failure> {
 /// Columns of the table of frames: name, width, content.
 type Column = (&'static str, usize, fn(&FrameReport) -> String);
 
-const COLUMNS: [Column; 21] = [
+const COLUMNS: [Column; 22] = [
     ("frame", 6, |r| r.frame.to_string()),
     ("time s", 9, |r| format!("{:.4}", r.time_s)),
     ("vertices", 9, |r| r.vertices.to_string()),
@@ -36,6 +36,7 @@ const COLUMNS: [Column; 21] = [
     ("contacts", 9, |r| r.contacts.to_string()),
     ("short", 6, |r| r.shortened_ways.to_string()),
     ("cross", 6, |r| r.crossings.map_or("-".into(), |n| n.to_string())),
+    ("resting", 8, |r| r.restraint.as_ref().map_or("-".into(), |s| s.resting.to_string())),
     ("total s", 9, |r| seconds(r.seconds.total)),
     ("build s", 10, |r| seconds(r.seconds.build)),
     ("assembly s", 11, |r| seconds(r.seconds.assembly)),

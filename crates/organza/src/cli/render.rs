@@ -22,6 +22,7 @@ pub(crate) fn run(args: &Render) -> Result<(), Failure> {
             Color::View => Colouring::View,
             Color::Visibility => Colouring::Visibility,
             Color::Speed => Colouring::Speed,
+            Color::Restraint => Colouring::Restraint,
         },
         frustum: args.frustum,
     };

@@ -344,4 +344,8 @@ impl Contact for SurfaceContact {
     fn n_touches(&self) -> usize {
         self.touches.len()
     }
+
+    fn is_still(&self, times: [f64; 2]) -> bool {
+        self.tangle.is_none() && self.obstacles.as_ref().is_none_or(|o| o.is_still(times))
+    }
 }

@@ -16,6 +16,8 @@ pub struct Obstacles {
     pub surface: Surface,
     /// Where their vertices are.
     pub motion: Motion,
+    /// Whether any of them moves ever.
+    pub moves: bool,
     /// Friction coefficient of every triangle's obstacle on cloth, by vertex (1).
     pub friction: Vec<f64>,
     /// Thickness of every triangle's obstacle, by vertex (m); absent for that of the settings.
@@ -40,10 +42,11 @@ impl Obstacles {
             friction.extend(std::iter::repeat_n(obstacle.friction, n));
             thickness.extend(std::iter::repeat_n(obstacle.thickness, n));
         }
+        let moves = obstacles.iter().any(Obstacle::is_moving);
         let bodies = obstacles.to_vec();
         let motion = move |time| bodies.iter().flat_map(|body| body.positions(time)).collect();
         let motion: Motion = Arc::new(motion);
-        Ok(surface.map(|surface| Obstacles { surface, motion, friction, thickness }))
+        Ok(surface.map(|surface| Obstacles { surface, motion, moves, friction, thickness }))
     }
 }
 
@@ -75,6 +78,13 @@ impl Moving {
     /// Half the thickness around a vertex (m).
     pub(super) fn radius(&self, v: u32, settings: &ContactSettings) -> f64 {
         0.5 * self.fixed.thickness[v as usize].unwrap_or(settings.thickness)
+    }
+
+    /// Whether all are between two times (s) where they were at the end of the last stage: at both ends
+    /// of them and half-way.
+    pub(super) fn is_still(&self, [from, to]: [f64; 2]) -> bool {
+        let times = [from, 0.5 * (from + to), to];
+        !self.fixed.moves || times.into_iter().all(|time| (self.fixed.motion)(time) == self.then)
     }
 
     /// Goes to the stage between two times (s).

@@ -39,7 +39,14 @@ pub enum Colouring {
     Visibility,
     /// The speed of every particle, from dark violet at rest to yellow at the greatest of the recording.
     Speed,
+    /// Who rests: triangles with a vertex of full dynamics blue, others with one in transition green,
+    /// those that stand still red; grey where nothing is restrained.
+    Restraint,
 }
+
+/// Colours of rest, of transition and of full dynamics, and where nothing is known.
+const MOTIONS: [Rgb; 3] = [[190, 60, 55], [95, 160, 80], [70, 110, 190]];
+const UNKNOWN: Rgb = [150, 150, 150];
 
 /// The colours of one garment.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,9 +56,12 @@ pub(super) enum OwnedPaint {
 }
 
 impl Colouring {
+    /// `states` is what the vertices do, see
+    /// [`RestraintSummary::states`](crate::report::RestraintSummary::states).
     pub(super) fn of(
         self,
         garment: &OwnedGarment,
+        states: Option<&str>,
         frame: u64,
         sight: Option<&Sight>,
     ) -> OwnedPaint {
@@ -77,6 +87,16 @@ impl Colouring {
                 let colour = |u| VIRIDIS.colour_in(size(u), low, high);
                 OwnedPaint::Triangles(garment.material.iter().map(colour).collect())
             }
+            (Colouring::Restraint, _) => {
+                let motions = |text| motions(text, garment.points.len());
+                let motions = states.map(motions).unwrap_or_default();
+                let most = |t: &[u32; 3]| {
+                    let each = t.iter().map(|&i| motions.get(i as usize).copied());
+                    each.collect::<Option<Vec<_>>>().and_then(|all| all.into_iter().max())
+                };
+                let colour = |t: &[u32; 3]| most(t).map_or(UNKNOWN, |motion| MOTIONS[motion]);
+                OwnedPaint::Triangles(garment.triangles.iter().map(colour).collect())
+            }
             (Colouring::Plain | Colouring::View | Colouring::Visibility | Colouring::Speed, _) => {
                 let [r, g, b, _] = garment.color;
                 // A float cast saturates: no colour can leave its range.
@@ -98,6 +118,24 @@ impl OwnedPaint {
             OwnedPaint::Triangles(colours) => Paint::Triangles(colours),
         }
     }
+}
+
+/// What every vertex does, as a place in [`MOTIONS`]; ends where the text is not understood.
+fn motions(states: &str, n_vertices: usize) -> Vec<usize> {
+    let mut all = Vec::new();
+    let mut rest = states;
+    while let Some(end) = rest.find(|c: char| !c.is_ascii_digit()) {
+        let Some(motion) = rest[end..].chars().next().and_then(|letter| "rta".find(letter)) else {
+            break;
+        };
+        let Ok(count) = rest[..end].parse::<usize>() else { break };
+        if count > n_vertices - all.len() {
+            break;
+        }
+        all.extend(std::iter::repeat_n(motion, count));
+        rest = &rest[end + 1..];
+    }
+    all
 }
 
 /// The larger principal stretch of every triangle (1); not a number where the material triangle has
@@ -130,13 +168,13 @@ mod tests {
         let stretch: Vec<f64> = stretches(&garment).collect();
         assert!((stretch[0] - 1.1).abs() < 1e-15, "{stretch:?}");
         assert_eq!(
-            Colouring::Stretch.of(&garment, 0, None),
+            Colouring::Stretch.of(&garment, None, 0, None),
             OwnedPaint::Triangles(vec![VIRIDIS.colour(1.0)])
         );
         garment.material[0][2] = [2.0, 0.0];
         assert!(stretches(&garment).all(f64::is_nan));
         assert_eq!(
-            Colouring::Stretch.of(&garment, 0, None),
+            Colouring::Stretch.of(&garment, None, 0, None),
             OwnedPaint::Triangles(vec![VIRIDIS.undefined])
         );
     }

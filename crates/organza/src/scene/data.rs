@@ -49,6 +49,10 @@ pub struct Scene {
     pub camera_path: Option<CameraPath>,
     /// Mesh sizes by what the camera sees; only where there is a camera.
     pub view: Option<View>,
+    /// From which thresholds on cloth rests that does not say so itself.
+    pub restraint: Thresholds,
+    /// Time in which momentum of cloth that rests bleeds away, if it does (s).
+    pub bleeding_s: Option<f64>,
     /// What is recorded.
     pub recording: Recording,
 }
@@ -62,6 +66,18 @@ pub struct View {
     pub occlusion: bool,
     /// Cameras besides that of the scene.
     pub more_cameras: Vec<CameraPath>,
+}
+
+/// From which thresholds on cloth rests.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Thresholds {
+    /// It does not.
+    #[default]
+    None,
+    /// By speed.
+    Speed(arps::Speed),
+    /// By kinetic energy.
+    Kinetic(arps::Kinetic),
 }
 
 impl Scene {
@@ -119,6 +135,8 @@ pub struct Cloth {
     pub initial_spin: Option<Spin>,
     /// How the mesh adapts; absent for a fixed mesh.
     pub remeshing: Option<Remeshing>,
+    /// From which thresholds on it rests; absent where it is as the scene says.
+    pub restraint: Option<Thresholds>,
 }
 
 /// Where a mesh comes from.

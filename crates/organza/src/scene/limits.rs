@@ -33,6 +33,8 @@ pub const MAX_SHOWN_CHARS: usize = 1000;
 pub const MAX_COORDINATE_M: f64 = 1e6;
 /// Speeds of cloth and wind (m/s).
 pub const MAX_SPEED_M_PER_S: f64 = 1e4;
+/// Largest threshold of kinetic energy (J).
+pub const MAX_ENERGY_J: f64 = 1e9;
 /// Angular speed (rad/s).
 pub const MAX_SPIN_RAD_PER_S: f64 = 1e4;
 /// Acceleration of gravity (m/s²).

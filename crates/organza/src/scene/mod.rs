@@ -32,7 +32,8 @@ pub(crate) mod typed;
 pub(crate) mod unsupported;
 
 pub use data::{
-    Cloth, Fluid, Garment, Handle, MeshSource, Obstacle, ObstacleSource, Scene, Sequence, View,
+    Cloth, Fluid, Garment, Handle, MeshSource, Obstacle, ObstacleSource, Scene, Sequence,
+    Thresholds, View,
 };
 pub(crate) use files::Files;
 pub use files::{Dialect, FileError, FileRequest, Resolver, Source, from_disk, from_sources};

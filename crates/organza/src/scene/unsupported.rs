@@ -8,20 +8,15 @@ use super::path::ValuePath;
 use super::typed::Complaint;
 
 /// Keys of the scene, and what they stand for.
-const SCENE: [(&str, &str); 3] = [
-    ("cameras", "several cameras"),
-    ("restraint", "adaptively restrained dynamics"),
-    ("morphs", "morphs"),
-];
+const SCENE: [(&str, &str); 2] = [("cameras", "several cameras"), ("morphs", "morphs")];
 
 /// Keys of each cloth.
-const CLOTH: [(&str, &str); 6] = [
+const CLOTH: [(&str, &str); 5] = [
     ("plasticity", "plastic deformation"),
     ("fracture", "fracture"),
     ("tearing", "tearing"),
     ("self_contact", "contact of single cloths; see `contact` of the scene"),
     ("friction", "friction of single cloths; see `contact` of the scene"),
-    ("restraint", "adaptively restrained dynamics"),
 ];
 
 /// Takes the unsupported keys out of a scene and complains of each that asks for something.

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::MeshFile;
+use super::{ClothRestraintFile, MeshFile};
 use crate::fabric::OrthotropicFabric;
 use crate::scene::motion::Transform;
 
@@ -55,6 +55,9 @@ pub struct ClothFile {
     /// How the mesh adapts; absent means it stays as it is.
     #[serde(default)]
     pub remeshing: Option<Remeshing>,
+    /// Who of its vertices may rest; absent means as the scene says.
+    #[serde(default)]
+    pub restraint: Option<ClothRestraintFile>,
 }
 
 /// What a cloth is made of: the name of a fabric of the project, a file with measurements, or

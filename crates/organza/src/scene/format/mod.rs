@@ -7,6 +7,7 @@ mod fluid;
 mod handle;
 mod mesh;
 mod obstacle;
+mod restraint;
 mod solver;
 mod view;
 
@@ -16,6 +17,7 @@ pub use fluid::*;
 pub use handle::*;
 pub use mesh::*;
 pub use obstacle::*;
+pub use restraint::*;
 pub use solver::*;
 pub use view::*;
 
@@ -90,6 +92,9 @@ pub struct SceneFile {
     /// Mesh sizes by what the camera sees; absent means that it does not matter what it sees.
     #[serde(default)]
     pub view: Option<ViewFile>,
+    /// Lets cloth rest that hardly moves; absent means that all of it always moves.
+    #[serde(default)]
+    pub restraint: Option<RestraintFile>,
     /// What is recorded besides the frames.
     #[serde(default)]
     pub recording: Recording,
@@ -144,6 +149,9 @@ impl Default for Recording {
     }
 }
 
+/// See [`RestraintFile::bleeding_s`], where the scene does not say (s).
+pub(crate) const BLEEDING_S: f64 = 0.5;
+
 /// Values of keys that a scene leaves out.
 mod default {
     pub(super) fn frames_per_second() -> f64 {
@@ -175,6 +183,10 @@ mod default {
     }
     pub(super) fn self_contact() -> bool {
         true
+    }
+    #[expect(clippy::unnecessary_wraps, reason = "the key may be null")]
+    pub(super) fn bleeding_s() -> Option<f64> {
+        Some(super::BLEEDING_S)
     }
     pub(super) fn vertical_fov_deg() -> f64 {
         40.0

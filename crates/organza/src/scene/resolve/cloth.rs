@@ -10,6 +10,7 @@ use crate::fabric::{Fabric, OrthotropicFabric, preset, read_measured};
 pub(super) fn resolve(
     cloth: ClothFile,
     name: String,
+    duration: f64,
     at: &At<'_>,
     context: &mut Context<'_, '_>,
 ) -> Option<Cloth> {
@@ -52,6 +53,9 @@ pub(super) fn resolve(
     if let Some(remeshing) = &cloth.remeshing {
         check_remeshing(remeshing, &at.key("remeshing"));
     }
+    let restraint = cloth.restraint.and_then(|wish| {
+        super::restraint::thresholds(wish.thresholds, wish.law, duration, &at.key("restraint"))
+    });
     Some(Cloth {
         name,
         mesh: mesh?,
@@ -66,6 +70,7 @@ pub(super) fn resolve(
         initial_velocity: cloth.initial_velocity,
         initial_spin: cloth.initial_spin,
         remeshing: cloth.remeshing,
+        restraint,
     })
 }
 

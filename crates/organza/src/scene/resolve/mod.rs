@@ -7,12 +7,13 @@ mod fluid;
 mod handle;
 mod mesh;
 mod obstacle;
+mod restraint;
 mod view;
 
 use super::check::{At, Complaints, beyond};
 use super::data::{Cloth, MeshSource, Obstacle, ObstacleSource, Scene};
 use super::files::Files;
-use super::format::{ClothFile, SceneFile, Wind};
+use super::format::{BLEEDING_S, ClothFile, SceneFile, Wind};
 use super::issue::{Issue, IssueKind};
 use super::limits;
 use super::typed::suggestion;
@@ -68,6 +69,7 @@ pub(super) fn resolve(
     let given = |cloth: &ClothFile| cloth.name.clone();
     let names = names(&file.cloths, given, "cloth", &top.key("cloths"));
     let handles = handle::resolve(file.handles, &names, &top.key("handles"));
+    let duration = f64::from(file.frames) / file.frames_per_second;
     let mut cloths: Option<Vec<_>> = {
         let resolved: Vec<_> = file
             .cloths
@@ -75,7 +77,7 @@ pub(super) fn resolve(
             .zip(names)
             .enumerate()
             .map(|(i, (cloth, name))| {
-                cloth::resolve(cloth, name, &top.key("cloths").index(i), context)
+                cloth::resolve(cloth, name, duration, &top.key("cloths").index(i), context)
             })
             .collect();
         resolved.into_iter().collect()
@@ -87,7 +89,7 @@ pub(super) fn resolve(
         check_wearers(cloths, obstacles, &top.key("cloths"));
     }
     if let Some(crowd) = file.crowd {
-        let members = crowd::resolve(crowd, &top.key("crowd"), context)?;
+        let members = crowd::resolve(crowd, duration, &top.key("crowd"), context)?;
         let taken = |name: &String| {
             let obstacles = obstacles.iter().flatten().any(|obstacle| obstacle.name == *name);
             obstacles || cloths.iter().flatten().any(|cloth| cloth.name == *name)
@@ -102,7 +104,6 @@ pub(super) fn resolve(
             cloths.as_mut()?.push(cloth);
         }
     }
-    let duration = f64::from(file.frames) / file.frames_per_second;
     let fluids = top.key("fluids");
     let fluid = fluid::resolve(file.fluids, obstacles.as_deref(), file.gravity, duration, &fluids);
     let up = super::data::up(file.gravity);
@@ -111,6 +112,11 @@ pub(super) fn resolve(
     let view = file
         .view
         .and_then(|view| view::settings(view, file.camera.is_some(), &facts, &top, context));
+    let restraint = file.restraint.and_then(|wish| {
+        let at = top.key("restraint");
+        restraint::check_bleeding(wish.bleeding_s, &at);
+        restraint::thresholds(wish.thresholds, wish.law, duration, &at)
+    });
     Some(Scene {
         name: file.name.unwrap_or_else(|| default_name.to_owned()),
         frames: file.frames,
@@ -130,6 +136,8 @@ pub(super) fn resolve(
         camera: file.camera,
         camera_path,
         view,
+        restraint: restraint.unwrap_or_default(),
+        bleeding_s: file.restraint.map_or(Some(BLEEDING_S), |wish| wish.bleeding_s),
         recording: file.recording,
     })
 }

@@ -1,0 +1,159 @@
+//! A restrained stage of the whole cloth, and the same in the numbers of the part that is solved.
+
+use crate::force::Stage;
+use crate::integrator::StageStart;
+use crate::newton::restrained::Restrained;
+use crate::newton::{Inertia, minimise};
+use crate::part::Part;
+use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
+use crate::solver::LinearSolver;
+use crate::system::System;
+use arps::{Conjugate, Held, Law};
+use mesh_core::{ClothState, World3};
+use std::time::Instant;
+
+/// One try of a stage, in the numbers of the whole.
+pub(super) struct Try {
+    pub(super) x: Vec<World3>,
+    /// Gradient on the active vertices; absent where none of them rests.
+    pub(super) gradient: Option<Vec<World3>>,
+    pub(super) report: SolveReport,
+    pub(super) pushed: Vec<u32>,
+}
+
+/// A stage in the numbers of the whole cloth.
+pub(super) struct WholeStage<'a> {
+    pub(super) cloth: &'a ClothState,
+    pub(super) start: &'a StageStart<'a>,
+    pub(super) held: &'a [Held],
+    /// Momenta that the stage would have without forces (kg m/s).
+    pub(super) p: &'a [World3],
+    pub(super) fixed: &'a [bool],
+    /// Where the stage begins, with what is fixed where it is to be (m).
+    pub(super) from: &'a [World3],
+    /// See [`Restrained::fine`].
+    pub(super) fine: f64,
+}
+
+impl WholeStage<'_> {
+    /// Where a vertex would go without forces (m).
+    pub(super) fn target(&self, i: usize) -> World3 {
+        if self.fixed[i] {
+            self.from[i]
+        } else {
+            self.start.base[i] + self.held[i].velocity(&self.p[i]) * self.start.h
+        }
+    }
+}
+
+/// A stage in the numbers of a part.
+pub(super) struct Local {
+    ids: Vec<u32>,
+    mass: Vec<f64>,
+    x_t0: Vec<World3>,
+    base: Vec<World3>,
+    p: Vec<World3>,
+    fixed: Vec<bool>,
+    conjugates: Vec<Conjugate>,
+    starts: [Vec<World3>; 2],
+}
+
+type Solved = (Vec<World3>, Option<Vec<World3>>, SolveReport);
+
+impl Local {
+    pub(super) fn new(
+        whole: &WholeStage<'_>,
+        ids: Vec<u32>,
+        answers: &dyn Fn(usize) -> bool,
+    ) -> Result<Local, SolveError> {
+        let &StageStart { x_t0, base, time_t0, .. } = whole.start;
+        let n = ids.len();
+        let each = |of: &[World3]| ids.iter().map(|&i| of[i as usize]).collect::<Vec<_>>();
+        let mut local = Local {
+            mass: ids.iter().map(|&i| whole.cloth.m[i as usize]).collect(),
+            x_t0: each(x_t0),
+            base: each(base),
+            p: each(whole.p),
+            starts: [each(whole.from), Vec::with_capacity(n)],
+            fixed: Vec::with_capacity(n),
+            conjugates: Vec::with_capacity(n),
+            ids,
+        };
+        for (k, &i) in local.ids.iter().enumerate() {
+            let i = i as usize;
+            let is_fixed = whole.fixed[i] || !answers(i);
+            local.fixed.push(is_fixed);
+            local.starts[1].push(if is_fixed { local.starts[0][k] } else { whole.target(i) });
+            let held = if is_fixed { for_ever(local.mass[k]) } else { whole.held[i] };
+            let told = |source| SolveError::Restraint { time: time_t0, source };
+            if held.law() == Law::Exact && !held.is_free() && held.p_r() < f64::INFINITY {
+                return Err(told(arps::StepError::SecondKink { particle: i }));
+            }
+            let conjugate = held.conjugate();
+            let conjugate = conjugate
+                .map_err(|cause| told(arps::StepError::NotConvex { particle: i, cause }))?;
+            local.conjugates.push(conjugate);
+        }
+        Ok(local)
+    }
+
+    pub(super) fn stage(&self, h: f64) -> Stage<'_> {
+        Stage { x_t0: &self.x_t0, base: &self.base, h }
+    }
+
+    pub(super) fn solve(
+        &self,
+        system: &mut System,
+        solver: &mut dyn LinearSolver,
+        settings: &NewtonSettings,
+        whole: &WholeStage<'_>,
+    ) -> Result<Solved, SolveError> {
+        let &StageStart { h, time, .. } = whole.start;
+        let inertia = Inertia {
+            mass: &self.mass,
+            target: &self.starts[1],
+            h,
+            time,
+            fixed: &self.fixed,
+            restrained: Some(Restrained {
+                base: &self.base,
+                p: &self.p,
+                conjugates: &self.conjugates,
+                fine: whole.fine,
+            }),
+        };
+        let (x, mut report) = minimise(system, solver, &inertia, &self.starts, settings)?;
+        let rests = |i: usize| !self.fixed[i] && x[i] == self.base[i];
+        let gradient = (0..x.len()).any(rests).then(|| {
+            let clock = Instant::now();
+            let gradient = system.gradient_with_contact(&x);
+            report.assembly_s += clock.elapsed().as_secs_f64();
+            gradient
+        });
+        Ok((x, gradient, report))
+    }
+}
+
+/// A particle that never moves.
+fn for_ever(mass: f64) -> Held {
+    let held = Held::new(Law::Ramp, mass, f64::INFINITY, f64::INFINITY);
+    held.expect("masses of a cloth are positive")
+}
+
+/// What was found for a part, in the numbers of the whole.
+pub(super) fn scattered(
+    part: &Part,
+    whole: &WholeStage<'_>,
+    (x, gradient, report): Solved,
+    pushed: Vec<u32>,
+) -> Try {
+    let mut all = whole.from.to_vec();
+    let mut forces = gradient.as_ref().map(|_| vec![World3::zeros(); all.len()]);
+    for (k, &i) in part.vertices().iter().enumerate() {
+        all[i as usize] = x[k];
+        if let (Some(forces), Some(gradient)) = (&mut forces, &gradient) {
+            forces[i as usize] = gradient[k];
+        }
+    }
+    Try { x: all, gradient: forces, report, pushed }
+}

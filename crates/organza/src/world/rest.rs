@@ -1,0 +1,153 @@
+//! Who rests in a world: thresholds by cloth, the policy on a mesh, and what is told of it.
+
+use super::World;
+use crate::build::Garment;
+use crate::report::{RestraintSummary, StretchRange};
+use crate::scene::{Scene, Thresholds};
+use arps::{Held, Motion, Particle, Restraint};
+use cloth_dynamics::{RestReport, RestingPolicy};
+use mesh_core::ClothState;
+use std::sync::Arc;
+
+/// Thresholds of every cloth, and bleeding.
+pub(super) struct Restraints {
+    by_garment: Vec<Thresholds>,
+    bleeding: Option<f64>,
+}
+
+impl Restraints {
+    /// Those of a scene; `None` if nothing in it may rest.
+    pub(super) fn new(scene: &Scene) -> Option<Restraints> {
+        let own = |cloth: &crate::scene::Cloth| cloth.restraint.unwrap_or(scene.restraint);
+        let by_garment: Vec<Thresholds> = scene.cloths.iter().map(own).collect();
+        let any = by_garment.iter().any(|thresholds| *thresholds != Thresholds::None);
+        any.then_some(Restraints { by_garment, bleeding: scene.bleeding_s })
+    }
+
+    /// The policy for a mesh.
+    pub(super) fn policy(&self, cloth: &ClothState, garments: &[Garment]) -> RestingPolicy {
+        let mut of_vertex = vec![0; cloth.mesh.n_vertices()];
+        for (corners, panel) in cloth.mesh.triangles().iter().zip(cloth.mesh.panels()) {
+            let garment = garments.partition_point(|garment| garment.panels.end <= *panel);
+            corners.iter().for_each(|&i| of_vertex[i as usize] = garment as u32);
+        }
+        let restraint = Arc::new(ByGarment { of_vertex, by_garment: self.by_garment.clone() });
+        RestingPolicy { restraint, bleeding: self.bleeding }
+    }
+}
+
+/// What is measured at the end of the steps of a frame.
+#[derive(Clone, Copy)]
+pub(super) struct Measured {
+    pub(super) stretch: StretchRange,
+    /// Restrained energy (J), if anything may rest.
+    pub(super) energy: f64,
+}
+
+impl World {
+    /// Measures the cloth as it is at a time (s).
+    pub(super) fn measure(&mut self, time: f64) -> Measured {
+        let stretch = StretchRange::of(&self.cloth);
+        if let Some(prepared) = &mut self.prepared {
+            self.potential_energy_j = prepared.system.energy_at_rest(&self.cloth.x);
+        }
+        let mut energy = 0.0;
+        if let Some(restraints) = &self.restraints {
+            let policy = restraints.policy(&self.cloth, &self.garments);
+            energy = kinetic_energy(&policy, &self.cloth, time) + self.potential_energy_j;
+        }
+        Measured { stretch, energy }
+    }
+
+    /// Kinetic energy (J), the restrained one where anything may rest, and then who does.
+    pub(crate) fn kinetic_energy(&self, rest: &RestReport) -> (f64, Option<RestraintSummary>) {
+        let Some(restraints) = &self.restraints else { return (self.cloth.kinetic_energy(), None) };
+        let policy = restraints.policy(&self.cloth, &self.garments);
+        let (energy, summary) = summary(&policy, &self.cloth, &self.garments, self.time(), rest);
+        (energy, Some(summary))
+    }
+}
+
+/// The thresholds of the garment that a vertex belongs to.
+struct ByGarment {
+    of_vertex: Vec<u32>,
+    by_garment: Vec<Thresholds>,
+}
+
+impl Restraint for ByGarment {
+    fn at(&self, particle: &Particle) -> Held {
+        match &self.by_garment[self.of_vertex[particle.index] as usize] {
+            Thresholds::None => ().at(particle),
+            Thresholds::Speed(speed) => speed.at(particle),
+            Thresholds::Kinetic(kinetic) => kinetic.at(particle),
+        }
+    }
+
+    fn is_steady(&self) -> bool {
+        // All of them depend on nothing but the mass.
+        true
+    }
+}
+
+/// Restrained kinetic energy (J).
+pub(super) fn kinetic_energy(policy: &RestingPolicy, cloth: &ClothState, time: f64) -> f64 {
+    let each = cloth.m.iter().zip(&cloth.x).enumerate().map(|(index, (&mass, &x))| {
+        let held = policy.restraint.at(&Particle { index, mass, x, time });
+        held.kinetic_energy(&(cloth.v[index] * mass))
+    });
+    each.sum()
+}
+
+/// What every vertex does, and what is told of it: restrained kinetic energy (J) and a summary.
+pub(super) fn summary(
+    policy: &RestingPolicy,
+    cloth: &ClothState,
+    garments: &[Garment],
+    time: f64,
+    rest: &RestReport,
+) -> (f64, RestraintSummary) {
+    let mut motions = Vec::with_capacity(cloth.m.len());
+    for (index, (&mass, &x)) in cloth.m.iter().zip(&cloth.x).enumerate() {
+        let held = policy.restraint.at(&Particle { index, mass, x, time });
+        motions.push(held.motion(&(cloth.v[index] * mass)));
+    }
+    let count = |motion| motions.iter().filter(|m| **m == motion).count();
+    let summary = RestraintSummary {
+        active: count(Motion::Full),
+        transition: count(Motion::Transition),
+        resting: count(Motion::Rest),
+        stages: rest.stages,
+        stages_slept: rest.slept,
+        solves: rest.solves,
+        unknowns: rest.unknowns,
+        untouched: rest.untouched,
+        woken: rest.woken,
+        parts_built: rest.parts,
+        stages_redone: rest.redone,
+        energy_j: 0.0,
+        momenta_cut: rest.cut,
+        states: states(&motions, cloth, garments),
+    };
+    (kinetic_energy(policy, cloth, time), summary)
+}
+
+/// Letters of the vertices of every garment in their order, each after how often it follows itself.
+fn states(motions: &[Motion], cloth: &ClothState, garments: &[Garment]) -> Vec<String> {
+    let mut of_vertex = vec![0; motions.len()];
+    for (corners, panel) in cloth.mesh.triangles().iter().zip(cloth.mesh.panels()) {
+        let garment = garments.partition_point(|garment| garment.panels.end <= *panel);
+        corners.iter().for_each(|&i| of_vertex[i as usize] = garment);
+    }
+    let mut letters = vec![Vec::new(); garments.len()];
+    for (motion, garment) in motions.iter().zip(of_vertex) {
+        letters[garment].push(match motion {
+            Motion::Rest => 'r',
+            Motion::Transition => 't',
+            Motion::Full => 'a',
+        });
+    }
+    let coded = |letters: Vec<char>| {
+        letters.chunk_by(|a, b| a == b).map(|run| format!("{}{}", run.len(), run[0])).collect()
+    };
+    letters.into_iter().map(coded).collect()
+}

@@ -1,0 +1,190 @@
+//! Restraint in scenes: what is refused, what rests, and that runs keep their bits.
+
+use std::path::Path;
+
+use organza::checkpoint;
+use organza::report::FrameReport;
+use organza::scene::{LoadOptions, Loaded, from_sources, load, parse};
+use organza::world::World;
+
+fn parsed(text: &str) -> Result<Loaded, String> {
+    parse(text, "s.json5", &LoadOptions::default(), &from_sources(&[])).map_err(|e| e.to_string())
+}
+
+/// A small sheet that hangs, with some more keys.
+fn sheet(keys: &str, cloth: &str) -> String {
+    format!(
+        "{{ frames: 40, substeps: 2, integrator: 'implicit-euler', {keys}
+           cloths: [{{ mesh: {{ grid: {{ size_m: [0.4, 0.4], cells: [5, 5] }} }}, fabric: 'denim',
+             transform: {{ rotate: {{ axis: [1, 0, 0], degrees: 80 }} }},
+             damping: {{ mass_per_s: 4, stiffness_s: 0.01 }}, {cloth} }}],
+           handles: [{{ select: {{ sides: ['upper'] }} }}] }}"
+    )
+}
+
+const SPEED: &str = "restraint: { thresholds: { speed: { rest_m_per_s: 0.02, full_m_per_s: 0.08 } }, bleeding_s: 0.3 },";
+
+fn own(name: &str, sets: &[&str]) -> Loaded {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
+    let sets = sets.iter().map(|set| (*set).to_owned()).collect();
+    let loaded = load(&path, &LoadOptions { sets, allow_unsupported: false });
+    let loaded = loaded.unwrap_or_else(|errors| panic!("{errors}"));
+    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+    loaded
+}
+
+fn run(world: &mut World, frames: usize) -> Vec<FrameReport> {
+    (0..frames).map(|_| world.advance().unwrap_or_else(|e| panic!("{e}"))).collect()
+}
+
+#[test]
+fn bad_thresholds_are_told_with_their_place() {
+    for (keys, told) in [
+        ("restraint: { thresholds: { speed: { rest_m_per_s: 2, full_m_per_s: 1 } } },", "inverted"),
+        (
+            "restraint: { thresholds: { speed: { rest_m_per_s: 1, full_m_per_s: 1 } } },",
+            "more room",
+        ),
+        (
+            "restraint: { thresholds: { speed: { rest_m_per_s: -1, full_m_per_s: 1 } } },",
+            "restraint.thresholds.speed.rest_m_per_s: must be zero or more",
+        ),
+        (
+            "restraint: { thresholds: { speed: { rest_m_per_s: 1, full_m_per_s: 1e9 } } },",
+            "beyond the limit",
+        ),
+        ("restraint: { thresholds: { kinetic: { rest_j: 1, full_j: 0.5 } } },", "inverted"),
+        (
+            "restraint: { thresholds: { automatic: { error_m: -1 } } },",
+            "restraint.thresholds.automatic.error_m: must be zero or more",
+        ),
+        (
+            "restraint: { thresholds: 'none', bleeding_s: 0 },",
+            "restraint.bleeding_s: must be positive",
+        ),
+        ("restraint: { thresholds: 'none', law: 'spline' },", "spline"),
+        ("restraint: { thresholds: { speed: { rest_m_per_s: 1 } } },", "full_m_per_s"),
+        ("restraint: { law: 'ramp' },", "thresholds"),
+        ("restraint: true,", "restraint"),
+    ] {
+        let error = parsed(&sheet(keys, "")).unwrap_err();
+        assert!(error.starts_with("s.json5:1:") && error.contains(told), "{keys}\n{error}");
+    }
+    let own = "restraint: { thresholds: { kinetic: { rest_j: 2, full_j: 1 } } }";
+    let error = parsed(&sheet("", own)).unwrap_err();
+    assert!(error.contains("cloths[0].restraint.thresholds"), "{error}");
+}
+
+#[test]
+fn no_restraint_and_that_of_nothing_have_the_same_bits() {
+    let mut plain = World::new(&parsed(&sheet("", "")).unwrap()).unwrap();
+    assert!(run(&mut plain, 4).iter().all(|report| report.restraint.is_none()));
+    assert!(plain.skipped().iter().any(|text| text.starts_with("restraint")));
+    let zero = "restraint: { thresholds: { speed: { rest_m_per_s: 0, full_m_per_s: 0 } } },";
+    for (keys, cloth) in [
+        ("restraint: { thresholds: 'none' },", ""),
+        (zero, ""),
+        (SPEED, "restraint: { thresholds: 'none' }"),
+    ] {
+        let mut world = World::new(&parsed(&sheet(keys, cloth)).unwrap()).unwrap();
+        run(&mut world, 4);
+        assert_eq!((&world.cloth.x, &world.cloth.v), (&plain.cloth.x, &plain.cloth.v), "{keys}");
+    }
+}
+
+/// A run that goes on from a checkpoint has the bits of one that saved there and went on.
+#[test]
+fn resumed_runs_have_the_same_bits() {
+    let loaded = parsed(&sheet(SPEED, "")).unwrap();
+    let mut world = World::new(&loaded).unwrap();
+    let mut states = Vec::new();
+    for _ in 0..4 {
+        run(&mut world, 9);
+        let saved = checkpoint::save(&mut world);
+        let mut other = World::new(&loaded).unwrap();
+        checkpoint::restore(&mut other, &saved).unwrap();
+        let reports = run(&mut world, 5);
+        run(&mut other, 5);
+        assert_eq!((&world.cloth.x, &world.cloth.v), (&other.cloth.x, &other.cloth.v));
+        states.extend(reports.into_iter().map(|report| report.restraint.unwrap()));
+    }
+    // It had moved, and it has slept.
+    assert!(states[0].active > 0 && states.last().unwrap().resting == 36, "{states:?}");
+}
+
+/// Frames of sleep assemble and solve nothing, and say so.
+#[test]
+fn what_rests_is_left_alone() {
+    let mut world = World::new(&parsed(&sheet(SPEED, "")).unwrap()).unwrap();
+    let reports = run(&mut world, 150);
+    let slept: Vec<&FrameReport> = reports
+        .iter()
+        .filter(|report| {
+            let restraint = report.restraint.as_ref().unwrap();
+            restraint.stages == restraint.stages_slept
+        })
+        .collect();
+    assert!(slept.len() > 40, "{}: {:?}", slept.len(), reports.last());
+    for report in slept {
+        assert_eq!((report.newton_iterations, report.factorisations), (0, 0));
+        let seconds = &report.seconds;
+        assert_eq!((seconds.assembly, seconds.linear, seconds.energy), (0.0, 0.0, 0.0));
+        let restraint = report.restraint.as_ref().unwrap();
+        assert_eq!((restraint.resting, restraint.states.join("").as_str()), (36, "36r"));
+        assert_eq!(report.kinetic_energy_j, 0.0);
+    }
+    // Without work from outside, energy only falls.
+    let energies: Vec<f64> =
+        reports.iter().map(|report| report.restraint.as_ref().unwrap().energy_j).collect();
+    let fall = energies[0] - energies.last().unwrap();
+    assert!(fall > 0.0);
+    assert!(energies.windows(2).all(|pair| pair[1] <= pair[0] + 1e-6 * fall), "{energies:?}");
+}
+
+/// With remeshing every frame, too, what has come to rest is left alone.
+#[test]
+fn remeshed_cloth_rests() {
+    let remeshing = "remeshing: { size_m: { min: 0.05, max: 0.2 }, refine_angle: 0.3 }";
+    let mut world = World::new(&parsed(&sheet(SPEED, remeshing)).unwrap()).unwrap();
+    let reports = run(&mut world, 150);
+    assert!(reports.iter().any(|report| report.remesh.is_some_and(|r| r.splits + r.collapses > 0)));
+    let last = reports.last().unwrap().restraint.as_ref().unwrap();
+    assert_eq!((last.stages_slept, last.resting), (last.stages, world.cloth.mesh.n_vertices()));
+}
+
+#[test]
+fn hanging_cloth_is_pushed_once() {
+    let loaded = own("hanging-cloth.json5", &["cloths[0].mesh.grid.cells=[6, 6]"]);
+    let [_, push] = &loaded.scene.handles[..] else { panic!() };
+    assert_eq!((push.start_s, loaded.scene.frames), (20.0, 750));
+    let mut world = World::new(&loaded).unwrap();
+    let reports = run(&mut world, 6);
+    assert!(reports.iter().all(|report| report.restraint.as_ref().unwrap().active > 30));
+}
+
+#[test]
+fn poke_wakes_cloth_that_sleeps() {
+    let loaded = own("poke.json5", &["cloths[0].mesh.grid.cells=[6, 6]"]);
+    let mut world = World::new(&loaded).unwrap();
+    let before = run(&mut world, 50);
+    let state = |report: &FrameReport| report.restraint.clone().unwrap();
+    assert_eq!(state(&before[49]).stages_slept, 1);
+    let poked = run(&mut world, 6);
+    assert!(poked.iter().all(|report| state(report).stages_slept == 0));
+    assert!(poked.iter().any(|report| state(report).active > 20), "{:?}", poked.last());
+    // After it is let go, energy falls.
+    let energies: Vec<f64> = poked[3..].iter().map(|report| state(report).energy_j).collect();
+    assert!(energies.windows(2).all(|pair| pair[1] <= pair[0]), "{energies:?}");
+}
+
+#[test]
+fn the_table_cloth_sleeps_beside_the_ball() {
+    let loaded = own("table.json5", &["cloths[0].mesh.grid.cells=[12, 6]"]);
+    let mut world = World::new(&loaded).unwrap();
+    let reports = run(&mut world, 60);
+    for frame in 1..=60 {
+        assert_eq!(world.crossings(frame), None);
+    }
+    let last = reports.last().unwrap().restraint.as_ref().unwrap();
+    assert!(last.resting > 60, "{last:?}");
+}

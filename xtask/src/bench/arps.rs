@@ -1,0 +1,201 @@
+//! Restraint: what it saves where cloth comes to rest, what it costs where nothing does, and what it
+//! does to shape and energy.
+
+use super::program::{Measured, Simulation};
+use super::report::{Figure, Report};
+use super::run_info::RunInfo;
+use super::surface::Surface;
+use super::{Benchmark, Context};
+use crate::command::{Failure, say};
+use std::process::{Command, Stdio};
+
+pub(super) const BENCHMARK: Benchmark = Benchmark {
+    name: "arps",
+    summary: "restraint: speed-up and error of cloth that comes to rest, overhead, energy, the paper's scheme",
+    run,
+};
+
+/// Frames over which speeds are compared: a second.
+const WINDOW: usize = 25;
+/// Frames until the hanging cloth is pushed.
+const PUSHED: usize = 500;
+/// Points along each side of the sheet at which shapes are compared, less one.
+const POINTS: usize = 30;
+
+fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    hanging(context, report)?;
+    context.save(report)?;
+    idle(context, report)?;
+    poke(context, report)?;
+    context.save(report)?;
+    paper(context, report)?;
+    report.remark("arps.resting_crowd.speedup is left out: there is no scene `resting-crowd`");
+    report.remark(
+        "arps.view.combined_speedup is left out: restraint does not depend on a camera yet",
+    );
+    Ok(())
+}
+
+fn simulate(
+    context: &Context,
+    name: &str,
+    frames: usize,
+    run: &str,
+    sets: &[&str],
+) -> Result<Measured, Failure> {
+    let scene = context.root.join(format!("scenes/{name}.json5"));
+    let out = context.runs().join(format!("arps_{name}_{run}.mcap"));
+    say(format!("{name}, {run}: {frames} frames"));
+    let sets = sets.iter().map(|set| (*set).to_owned()).collect();
+    context.program.simulate(&Simulation { scene, frames, sets, out })
+}
+
+/// The hanging cloth with and without restraint.
+fn hanging(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    let frames = if context.options.quick { PUSHED / 2 } else { 750 };
+    let restrained = simulate(context, "hanging-cloth", frames, "restrained", &[])?;
+    let plain = simulate(context, "hanging-cloth", frames, "plain", &["restraint=null"])?;
+    let ratios = speed_ups(&restrained.info, &plain.info);
+    let note = format!(
+        "Wall time of frames without restraint over that with it, second by second, over {frames} frames; the \
+         mean is that of these ratios.{}",
+        restrained.info.troubles()
+    );
+    let least = ratios.iter().copied().min_by(f64::total_cmp);
+    let most = ratios.iter().copied().max_by(f64::total_cmp);
+    let mean = (!ratios.is_empty()).then(|| ratios.iter().sum::<f64>() / ratios.len() as f64);
+    for (what, value) in [("min", least), ("mean", mean), ("max", most)] {
+        let figure = value.and_then(|value| Figure::exact(value, "1", &note));
+        report.add(&format!("arps.hanging.speedup.{what}"), figure);
+    }
+    let whole = plain.info.sum("/seconds/total") / restrained.info.sum("/seconds/total");
+    let note = "Wall time of the whole run without restraint over that with it.";
+    report.add("arps.hanging.speedup.whole", Figure::exact(whole, "1", note));
+    let awake =
+        restrained.info.sum("/restraint/stages") - restrained.info.sum("/restraint/stages_slept");
+    let note = "Linear systems per stage of the hanging cloth that was not slept through.";
+    let solves = restrained.info.sum("/restraint/solves") / awake;
+    report.add("arps.solves_per_step", Figure::exact(solves, "1", note));
+    let at = PUSHED.min(frames);
+    let error = shape_error(context, at)?;
+    let note = format!(
+        "Largest distance between the cloth with and without restraint after {at} frames; it is 1 m wide."
+    );
+    report.add("arps.hanging.rest_error_m", Figure::exact(error, "m", &note));
+    Ok(())
+}
+
+/// Speed-up of every window.
+fn speed_ups(restrained: &RunInfo, plain: &RunInfo) -> Vec<f64> {
+    let seconds = [restrained, plain].map(|info| info.each("/seconds/total"));
+    let sum = |part: &[f64]| part.iter().sum::<f64>();
+    let windows = seconds[0].chunks_exact(WINDOW).zip(seconds[1].chunks_exact(WINDOW));
+    windows.map(|(restrained, plain)| sum(plain) / sum(restrained)).collect()
+}
+
+/// Largest distance (m) between the sheets of both runs in a frame.
+fn shape_error(context: &Context, frame: usize) -> Result<f64, Failure> {
+    let mut shapes = Vec::new();
+    for run in ["restrained", "plain"] {
+        let recording = context.runs().join(format!("arps_hanging-cloth_{run}.mcap"));
+        let out = context.runs().join(format!("arps_hanging-cloth_{run}"));
+        context.program.export_obj(&recording, frame, &out)?;
+        let path = out.join(format!("frame_{frame:05}.obj"));
+        shapes.push(Surface::read(&path).map_err(Failure::Unable)?);
+    }
+    let share = |k: usize| k as f64 / POINTS as f64;
+    let points = (0..=POINTS).flat_map(|i| (0..=POINTS).map(move |j| [share(i), share(j)]));
+    let distance = |point| {
+        let (a, b) = (shapes[0].at(point)?, shapes[1].at(point)?);
+        Some((0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum::<f64>().sqrt())
+    };
+    Ok(points.filter_map(distance).fold(0.0, f64::max))
+}
+
+/// What restraint costs where nothing rests: the hanging cloth while it swings, with thresholds that it
+/// is never below.
+fn idle(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    let frames = if context.options.quick { 10 } else { WINDOW };
+    let slow = "restraint.thresholds={speed: {rest_m_per_s: 1e-7, full_m_per_s: 4e-7}}";
+    // Alternately, so that whatever else the machine does meets both.
+    let mut cpu = [Vec::new(), Vec::new()];
+    for round in 0..3 {
+        for (k, set) in [slow, "restraint=null"].into_iter().enumerate() {
+            let name = format!("idle_{k}_{round}");
+            cpu[k].push(
+                simulate(context, "hanging-cloth", frames, &name, &[set])?
+                    .info
+                    .sum("/seconds/total"),
+            );
+        }
+    }
+    let least = cpu.map(|runs| runs.into_iter().fold(f64::INFINITY, f64::min));
+    let note = format!(
+        "Wall time of {frames} frames of the swinging cloth with restraint that restrains nobody over that \
+         without, less 1; the fastest of 3 runs each."
+    );
+    report.add("arps.idle_overhead", Figure::exact(least[0] / least[1] - 1.0, "1", &note));
+    Ok(())
+}
+
+/// Energy that the poked cloth gains after it is let go.
+fn poke(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    let frames = if context.options.quick { 70 } else { 200 };
+    let info = simulate(context, "poke", frames, "restrained", &[])?.info;
+    let energies = info.each("/restraint/energy_j");
+    // It is let go at 2.08 s, in frame 52.
+    let free = energies.get(52..).unwrap_or_default();
+    let gain = free.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    let most = free.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let least = free.iter().copied().fold(f64::INFINITY, f64::min);
+    let note = format!(
+        "Largest gain of restrained energy in a step after the poke, as a share of all that is dissipated.{}",
+        info.troubles()
+    );
+    report.add("arps.poke.energy_gain", Figure::exact(gain / (most - least), "1", &note));
+    Ok(())
+}
+
+/// How often the paper's scheme blows up on nets on which the convex one never gains energy.
+fn paper(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    let steps = if context.options.quick { "300" } else { "3000" };
+    say(format!("stress grid: {steps} steps"));
+    let words = "run --release --quiet --package arps --example stress_grid --";
+    let told = Command::new("cargo")
+        .args(words.split(' '))
+        .arg(steps)
+        .current_dir(&context.root)
+        .stderr(Stdio::inherit())
+        .output()
+        .map_err(|error| Failure::Unable(format!("cannot start cargo: {error}")))?;
+    if !told.status.success() {
+        return Err(Failure::Unable("the stress grid failed".into()));
+    }
+    let told = String::from_utf8_lossy(&told.stdout).into_owned();
+    let blow_ups = blow_ups(&told);
+    let note = format!(
+        "Runs of {steps} steps of nets with stiffness ratios from 1 to 1e8 in which Algorithm 1 of \
+         Manteaux2013 with its own law blew up; the convex scheme on the same nets: {}",
+        told.lines().last().unwrap_or_default()
+    );
+    report.add("arps.paper_scheme.blowups", blow_ups.and_then(|n| Figure::exact(n, "1", &note)));
+    Ok(())
+}
+
+/// The first number in brackets of the last line.
+fn blow_ups(told: &str) -> Option<f64> {
+    let (_, counts) = told.lines().last()?.split_once("blew up in [")?;
+    counts.split([',', ']']).next()?.trim().parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::blow_ups;
+
+    #[test]
+    fn blow_ups_are_read_from_the_last_line() {
+        let told = "net\n45 runs. Paper's scheme blew up in [31, 2, 0] runs (Spline).\n";
+        assert_eq!(blow_ups(told), Some(31.0));
+        assert_eq!(blow_ups("nothing"), None);
+    }
+}
