@@ -3,6 +3,7 @@
 mod bodies;
 mod flow;
 mod rest;
+mod skipped;
 mod tangled;
 #[cfg(test)]
 mod tests;
@@ -482,39 +483,6 @@ impl World {
     /// Names of the forces that exist.
     pub fn force_names(&self) -> Vec<&'static str> {
         self.prepared.as_ref().map(|p| p.system.force_names()).unwrap_or_default()
-    }
-
-    /// Stages that this scene does not need, and why.
-    pub fn skipped(&self) -> Vec<String> {
-        let mut skipped = Vec::new();
-        if !self.has_cloth() {
-            skipped.push("cloth: none in the scene".to_string());
-            let is_free = self.fluid.as_ref().is_some_and(|water| !water.is_restrained);
-            skipped.extend(is_free.then(|| "restraint: none in the scene".to_string()));
-            return skipped;
-        }
-        let mut note = |absent: bool, text: &str| {
-            if absent {
-                skipped.push(text.to_string());
-            }
-        };
-        note(self.remeshing.is_none(), "sizing, remeshing: all meshes are fixed");
-        let looks = self.remeshing.as_ref().is_some_and(Remeshing::looks);
-        note(!looks, "view: mesh sizes do not depend on a camera");
-        let follows = self.remeshing.as_ref().is_some_and(Remeshing::follows_obstacles);
-        let is_bound = follows && !self.obstacles.is_empty();
-        note(!is_bound, "sizing by obstacles: no mesh size depends on them");
-        note(self.environment.wind.is_none(), "wind: none in the scene");
-        let limits = self.fabrics.iter().any(|f| f.strain_limits.is_some());
-        note(!limits, "strain limits: none in the scene");
-        note(self.fabrics.iter().all(|f| f.bending.is_none()), "bending: no fabric resists it");
-        note(self.handles.list().is_empty(), "handles: none in the scene");
-        note(self.fluid.is_none(), "fluid: none in the scene");
-        note(self.contact.is_none(), "contact: none in the scene");
-        note(self.restraints.is_none(), "restraint: all of the cloth always moves");
-        let is_free = self.contact.is_some() && !self.tangled.was_at_work;
-        note(is_free, "untangling: nothing passes through anything");
-        skipped
     }
 }
 
