@@ -27,7 +27,17 @@ fn absent_parts_are_absent() {
     let mut bare = world("");
     assert_eq!(bare.force_names(), ["membrane", "bending", "gravity"]);
     let report = bare.advance().unwrap();
-    for stage in ["remeshing", "view", "wind", "strain limits", "handles", "contact"] {
+    for stage in [
+        "remeshing",
+        "sizing by obstacles",
+        "view",
+        "wind",
+        "strain limits",
+        "handles",
+        "contact",
+        "restraint",
+        "fluid",
+    ] {
         assert!(report.skipped.iter().any(|s| s.contains(stage)), "{stage}: {:?}", report.skipped);
     }
     assert!(report.remesh.is_none() && report.view.is_none());
@@ -36,13 +46,19 @@ fn absent_parts_are_absent() {
 
     let mut full = world(
         r#"wind: { velocity: [1, 0, 0] }, handles: [{ select: { corners: ["lower-left"] } }],
-           camera: { position: [0, -2, 1], target: [0, 0, 0] }, view: {}, contact: {}, obstacles: [{ mesh: { sphere: { radius_m: 0.1 } },
+           camera: { position: [0, -2, 1], target: [0, 0, 0] }, view: {}, contact: {},
+           restraint: { thresholds: { speed: { rest_m_per_s: 1e-6, full_m_per_s: 1e-5 } } },
+           obstacles: [{ mesh: { sphere: { radius_m: 0.1 } },
                                       transform: { translate: [0, 0, -1] } }],"#,
     );
     let forces = ["membrane", "bending", "strain limits", "wind", "gravity", "contact"];
     assert_eq!(full.force_names(), forces);
     let report = full.advance().unwrap();
-    let idle = ["fluid: none in the scene", "untangling: nothing passes through anything"];
+    let idle = [
+        "sizing by obstacles: no mesh size depends on them",
+        "fluid: none in the scene",
+        "untangling: nothing passes through anything",
+    ];
     assert_eq!(report.skipped, idle);
     assert!(report.remesh.is_some() && report.view.is_some());
 }

@@ -116,7 +116,7 @@ fn unknown_and_missing_keys() {
         "densty: 1",
         "s.json5:2:40: cloths[0].densty: unknown key `densty`, expected one of name, mesh, transform, \
          fabric, panel_fabrics, thicken, multipliers, thickness_m, strain_limits, bending, damping, initial_velocity, \
-         initial_spin, remeshing",
+         initial_spin, remeshing, restraint",
     );
     cloth_complains(
         "damping: {stiffness: 1}",
@@ -162,8 +162,8 @@ fn unknown_and_missing_keys() {
         "'a`, expected `b': 1,",
         "s.json5:1:13: a`, expected `b: unknown key `a`, expected `b`, \
         expected one of $schema, name, frames, frames_per_second, substeps, gravity, wind, integrator, \
-        newton, linear_solver, linear_tolerance, cloths, handles, obstacles, fluids, contact, camera, \
-        shots, view, recording",
+        newton, linear_solver, linear_tolerance, cloths, handles, obstacles, crowd, fluids, contact, camera, \
+        shots, view, restraint, recording",
     );
 }
 
@@ -233,7 +233,7 @@ fn complaints_about_set_values_name_the_argument() {
 
 #[test]
 fn what_is_not_supported_is_an_error_or_a_warning() {
-    let text = with("cameras: [{}], morphs: null,", "plasticity: {yield: 1}");
+    let text = with("cameras: [{}], morphs: true,", "plasticity: {yield: 1}");
     let errors = errors_of(text.as_bytes(), &[]);
     assert_eq!(
         errors.to_string(),
