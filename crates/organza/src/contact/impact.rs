@@ -52,7 +52,7 @@ impl SurfaceContact {
         fixed: &[bool],
     ) -> Result<usize, Blocked> {
         let mut changed = vec![false; x.len()];
-        // Those whose pairs have to be looked at: all, then those that the last round moved.
+        // Those whose pairs have to be looked at: all, then those that the last round moved or hit.
         let mut dirty: Option<Vec<bool>> = None;
         let mut zones = Zones::default();
         let mut round = 0;
@@ -79,12 +79,22 @@ impl SurfaceContact {
                 self.move_as_one(&zones, x_t0, x, fixed);
             }
             let moved: Vec<bool> = before.iter().zip(&*x).map(|(from, to)| from != to).collect();
-            if !moved.contains(&true) {
-                return Err(blocked);
-            }
             changed.iter_mut().zip(&moved).for_each(|(changed, moved)| *changed |= moved);
-            dirty = Some(moved);
-            round += 1;
+            round = match moved.contains(&true) {
+                true => round + 1,
+                // What does nothing now will not do anything in the next round.
+                false if round < NORMAL_ROUNDS => NORMAL_ROUNDS,
+                false if round < STICKING_ROUNDS => STICKING_ROUNDS,
+                false => return Err(blocked),
+            };
+            // A hit that nothing was done about is still one.
+            let mut open = moved;
+            for sides in hits.iter().map(|hit| &hit.sides) {
+                for k in (0..4).filter(|&k| sides.is_cloth[k]) {
+                    open[sides.vertices[k] as usize] = true;
+                }
+            }
+            dirty = Some(open);
         }
     }
 
