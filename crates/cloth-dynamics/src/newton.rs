@@ -49,9 +49,7 @@ impl Inertia<'_> {
         let contact = system.contact.as_ref().map_or(0.0, |contact| contact.energy(x));
         kinetic + system.energy(x) + contact
     }
-}
 
-impl Inertia<'_> {
     /// Where a step leads to.
     fn reach(&self, i: usize, x: &World3, step: &World3) -> World3 {
         let to = x + step;
@@ -76,6 +74,9 @@ const REST_STARTS: u32 = 7;
 /// Iterations are allowed up to this multiple of the limit while triangles are out of their strain
 /// limits.
 const LIMIT_PATIENCE: usize = 3;
+/// How often contacts are looked for that came up during the iterations.
+const MAX_LOOKS: usize = 2;
+
 /// What an iteration finds.
 enum Found {
     Direction(Direction),
@@ -95,9 +96,6 @@ struct Direction {
     /// The matrix had to be made positive definite.
     shifted: bool,
 }
-
-/// How often contacts are looked for that came up during the iterations.
-const MAX_LOOKS: usize = 2;
 
 /// The lowest point so far, kept while steps that raise the potential are on trial.
 #[derive(Default)]
@@ -120,8 +118,8 @@ struct Newton<'a> {
     report: SolveReport,
     x: Vec<World3>,
     phi: f64,
-    /// The potential of the start at rest.
-    at_rest: f64,
+    /// The start at rest (m).
+    at_rest: &'a [World3],
     trial: Vec<World3>,
     lowest: Watchdog,
     kind: Stiffness,
@@ -152,7 +150,7 @@ pub(crate) fn minimise(
     settings: &NewtonSettings,
 ) -> Result<(Vec<World3>, SolveReport), SolveError> {
     let clock = Instant::now();
-    let (x, phi, at_rest) = choose_start(system, inertia, starts)?;
+    let (x, phi) = choose_start(system, inertia, starts)?;
     let energy_s = clock.elapsed().as_secs_f64();
     let report = SolveReport { stages: 1, residual: f64::INFINITY, energy_s, ..Default::default() };
     let mut newton = Newton {
@@ -171,7 +169,7 @@ pub(crate) fn minimise(
         report,
         x,
         phi,
-        at_rest,
+        at_rest: &starts[0],
     };
     let (mut budget, mut looks) = (settings.max_iterations, 0);
     loop {
@@ -195,25 +193,25 @@ pub(crate) fn minimise(
     Ok((newton.x, newton.report))
 }
 
-/// The start, its potential, and that of the start at rest.
+/// The start and its potential.
 fn choose_start(
     system: &mut System,
     inertia: &Inertia<'_>,
     [resting, ballistic]: &[Vec<World3>; 2],
-) -> Result<(Vec<World3>, f64, f64), SolveError> {
+) -> Result<(Vec<World3>, f64), SolveError> {
     let phi = inertia.potential(system, resting);
     // One step resembles the next: where it is better to start at rest, the other start is looked at
     // only now and then.
     if system.rests > 0 && phi.is_finite() {
         system.rests -= 1;
-        return Ok((resting.clone(), phi, phi));
+        return Ok((resting.clone(), phi));
     }
     let other = inertia.potential(system, ballistic);
     if other < phi || (other.is_finite() && !phi.is_finite()) {
-        Ok((ballistic.clone(), other, phi))
+        Ok((ballistic.clone(), other))
     } else if phi.is_finite() {
         system.rests = REST_STARTS;
-        Ok((resting.clone(), phi, phi))
+        Ok((resting.clone(), phi))
     } else {
         Err(SolveError::NotFinite { time: inertia.time, h: inertia.h })
     }
@@ -395,8 +393,10 @@ impl Newton<'_> {
         self.report.shortened = contact.secure(&mut self.x, self.inertia.fixed).map_err(caught)?;
         self.report.touches = contact.n_touches();
         let is_bent = self.report.shortened > 0 && !self.system.accepts_rise;
-        let rises = is_bent
-            && self.inertia.potential(self.system, &self.x) > self.at_rest + noise(self.at_rest);
+        let potential = |x: &[World3]| self.inertia.potential(self.system, x);
+        // With the contacts that are known now: at the start some were not.
+        let is_above = |rest: f64| potential(&self.x) > rest + noise(rest);
+        let rises = is_bent && is_above(potential(self.at_rest));
         self.report.contact_s += clock.elapsed().as_secs_f64();
         if rises {
             return Err(SolveError::Rise { time: self.inertia.time, h: self.inertia.h });

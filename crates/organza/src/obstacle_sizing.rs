@@ -29,11 +29,12 @@ pub(crate) fn metrics(
 ) -> Vec<Metric> {
     let mesh = &cloth.mesh;
     let mut metrics = vec![Metric::ZERO; mesh.triangles().len()];
-    let body = Body::new(obstacles, time);
+    let x = (obstacles.motion)(time);
     let near_cloth = Aabb::around(&cloth.x).grown(reach);
-    if !near_cloth.overlaps(&Aabb::around(&body.x)) {
+    if !near_cloth.overlaps(&Aabb::around(&x)) {
         return metrics;
     }
+    let body = Body::new(obstacles, x);
     let of_cloth = |t: u32| mesh.triangles()[t as usize].map(|v| cloth.x[v as usize]);
     let tree = obstacles.surface.tree(&body.x);
     let of_body = |t: u32| obstacles.surface.corners(&body.x, t);
@@ -75,7 +76,7 @@ pub(crate) fn metrics(
     metrics
 }
 
-/// The obstacles at a time.
+/// The obstacles, with all their vertices at `x` (m).
 struct Body {
     x: Vec<World3>,
     /// Sum of the area vectors of the triangles around each vertex (m²).
@@ -85,8 +86,7 @@ struct Body {
 }
 
 impl Body {
-    fn new(obstacles: &Obstacles, time: f64) -> Body {
-        let x = (obstacles.motion)(time);
+    fn new(obstacles: &Obstacles, x: Vec<World3>) -> Body {
         let triangles = obstacles.surface.triangles();
         let areas: Vec<World3> =
             (0..).zip(triangles).map(|(t, _)| normal(&obstacles.surface.corners(&x, t))).collect();

@@ -4,7 +4,7 @@ use cloth_dynamics::law::{Bending, Membrane, Quadratic};
 use cloth_dynamics::solver::{Auto, LinearSettings};
 use cloth_dynamics::{
     BendingModel, Constraints, Damping, Environment, Fabric, ImplicitEuler, NewtonSettings,
-    SolveReport, Step, System, TimeIntegrator,
+    SolveError, SolveReport, Step, System, TimeIntegrator,
 };
 use collision::{Surface, intersect};
 use mesh_core::generate::{self, Diagonal};
@@ -159,6 +159,42 @@ fn a_fast_ball_does_not_pass_through_a_hanging_sheet() {
     let mut run = Run::new(cloth, Some(ball(0.1, 0.3, way)), 0.3);
     let held = move |_: f64| Constraints { fixed: fixed.clone(), springs: Vec::new() };
     run.steps(120, 0.005, &held);
+}
+
+/// A ball that goes through a sheet whose middle is held: that nothing can be done about it is an error,
+/// however far the cloth around gives way.
+#[test]
+fn what_cannot_give_way_is_caught() {
+    let cloth = sheet(0.4, 16, World3::new(-0.2, -0.2, 0.0));
+    let middle = (0..).zip(&cloth.x).filter(|(_, x)| x.x.hypot(x.y) < 0.04);
+    let fixed: Vec<(u32, World3)> = middle.map(|(i, x)| (i, *x)).collect();
+    assert!(fixed.len() > 4);
+    let held = move |_: f64| Constraints { fixed: fixed.clone(), springs: Vec::new() };
+    let way = |t: f64| World3::new(0.003, 0.002, 2.0 * t - 0.13);
+    let mut run = Run::new(cloth, Some(ball(0.1, 0.3, way)), 0.3);
+    let mut solver = Auto::new(LinearSettings::default());
+    let newton = NewtonSettings { max_iterations: 40, tolerance: run.tolerance };
+    for _ in 0..30 {
+        let step = Step { time: run.time, h: 0.005 };
+        let made = ImplicitEuler.advance(
+            &mut run.cloth,
+            &mut run.system,
+            &mut solver,
+            &held,
+            &newton,
+            step,
+        );
+        match made {
+            Ok(_) => run.time += step.h,
+            Err(SolveError::Caught { place, .. }) => {
+                assert!(place.norm() < 0.1, "{place}");
+                return;
+            }
+            Err(error) => panic!("{error}"),
+        }
+        assert_eq!(run.n_crossings(), 0, "at {} s", run.time);
+    }
+    panic!("the ball has gone through");
 }
 
 /// A sheet laid double in mid air, one half above the other, falls on a ball: layers stay apart.
