@@ -89,6 +89,7 @@ fn fabric() -> Result<Fabric, NotPositive> {
         membrane: Membrane::Orthotropic(Quadratic::isotropic(1000.0, 0.3)?),
         bending: Some(Bending::Orthotropic(Quadratic::isotropic(1e-5, 0.3)?)),
         bending_model: BendingModel::ShapeOperator,
+        tension_field: false,
         strain_limits: None,
         damping: Damping::default(),
     })

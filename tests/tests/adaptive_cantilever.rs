@@ -28,6 +28,7 @@ fn tip_of_the_master_curve_within_three_per_cent() {
         membrane: Membrane::Orthotropic(Quadratic::isotropic(2e4, 0.0).unwrap()),
         bending: Some(Bending::Orthotropic(Quadratic::isotropic(rigidity, 0.0).unwrap())),
         bending_model: BendingModel::ShapeOperator,
+        tension_field: false,
         strain_limits: None,
         damping: Damping::default(),
     };

@@ -327,6 +327,7 @@ mod tests {
                 Quadratic::orthotropic(4e-5, 1e-5, 2e-5, 8e-6).unwrap(),
             )),
             bending_model: BendingModel::ShapeOperator,
+            tension_field: false,
             strain_limits: None,
             damping: Damping { mass: 0.0, stiffness: 1e-3 },
         };

@@ -44,6 +44,9 @@ pub struct Fabric {
     pub bending_model: BendingModel,
     /// Bounds on the stretch, if any.
     pub strain_limits: Option<StrainLimits>,
+    /// Lets go of compression beyond what buckles within a triangle, as by wrinkles that are finer than
+    /// the mesh (Pipkin1986, Koh2014 §5). The lower bound on the stretch then has no meaning.
+    pub tension_field: bool,
     /// Damping.
     pub damping: Damping,
 }

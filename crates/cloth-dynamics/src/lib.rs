@@ -20,6 +20,7 @@
 //!     membrane: Membrane::Orthotropic(Quadratic::isotropic(400.0, 0.2)?),
 //!     bending: Some(Bending::Orthotropic(Quadratic::isotropic(1e-5, 0.0)?)),
 //!     bending_model: BendingModel::ShapeOperator,
+//!     tension_field: false,
 //!     strain_limits: None,
 //!     damping: Damping::default(),
 //! };

@@ -15,7 +15,7 @@
 use crate::element::{ElementModel, ElementSystem, Stiffness, chosen};
 use crate::fabric::Fabric;
 use crate::force::Stage;
-use crate::law::{Law, Membrane, Response, project3};
+use crate::law::{Law, Membrane, Response, TensionField, project3};
 use crate::rest::RestTriangle;
 use mesh_core::{World3, par};
 use nalgebra::{Matrix2, Matrix3, Matrix3x2, Vector3};
@@ -32,6 +32,10 @@ pub struct MembraneModel {
     /// Stress (s₁₁, s₂₂, s₁₂) for the geometric part of the projected stiffness (N/m).
     tension: Vec<Vector3<f64>>,
     damped: bool,
+    /// What wrinkles take from each fabric; empty if from none.
+    fields: Arc<Vec<Option<TensionField>>>,
+    /// Loads at which triangles buckle (N/m), as `fields`.
+    loads: Vec<Vector3<f64>>,
     h: f64,
 }
 
@@ -46,7 +50,9 @@ impl MembraneModel {
         let strain_t0 = if damped { vec![Vector3::zeros(); rest.len()] } else { Vec::new() };
         let tension = vec![Vector3::zeros(); rest.len()];
         let stencils = triangles.to_vec();
-        MembraneModel { stencils, rest, fabrics, strain_t0, tension, damped, h: 1.0 }
+        let fields = Arc::new(tension_fields(&fabrics));
+        let loads = loads(&rest, &fields);
+        MembraneModel { stencils, rest, fabrics, strain_t0, tension, damped, fields, loads, h: 1.0 }
     }
 
     fn fabric(&self, e: usize) -> &Fabric {
@@ -60,8 +66,17 @@ impl MembraneModel {
         (self.damped && eta > 0.0).then(|| fabric.membrane.at_rest() * (eta / self.h))
     }
 
+    /// What wrinkles within a triangle change.
+    fn wrinkled(&self, e: usize, strain: &Vector3<f64>) -> Option<Response> {
+        let load = self.loads.get(e)?;
+        self.fields[self.rest[e].panel as usize].as_ref()?.change(strain, load)
+    }
+
     fn stress(&self, e: usize, strain: &Vector3<f64>) -> Vector3<f64> {
-        let stress = self.fabric(e).membrane.stress(strain);
+        let mut stress = self.fabric(e).membrane.stress(strain);
+        if let Some(change) = self.wrinkled(e, strain) {
+            stress += change.stress;
+        }
         match self.viscosity(e) {
             Some(viscosity) => stress + viscosity * (strain - self.strain_t0[e]),
             None => stress,
@@ -70,12 +85,39 @@ impl MembraneModel {
 
     fn response(&self, e: usize, strain: &Vector3<f64>) -> Response {
         let mut response = self.fabric(e).membrane.response(strain);
+        if let Some(change) = self.wrinkled(e, strain) {
+            response.stress += change.stress;
+            response.tangent += change.tangent;
+        }
         if let Some(viscosity) = self.viscosity(e) {
             response.stress += viscosity * (strain - self.strain_t0[e]);
             response.tangent += viscosity;
         }
         response
     }
+}
+
+/// What wrinkles take from each fabric; empty if from none. Measured fabrics lose what their law at rest
+/// would: under compression it is that, nearly.
+fn tension_fields(fabrics: &[Fabric]) -> Vec<Option<TensionField>> {
+    if !fabrics.iter().any(|f| f.tension_field) {
+        return Vec::new();
+    }
+    let field =
+        |f: &Fabric| TensionField::new(f.membrane.at_rest(), f.bending.as_ref().map(Law::at_rest));
+    fabrics.iter().map(|f| f.tension_field.then(|| field(f)).flatten()).collect()
+}
+
+/// Loads at which triangles buckle (N/m); empty if nothing may.
+fn loads(rest: &[RestTriangle], fields: &[Option<TensionField>]) -> Vec<Vector3<f64>> {
+    if fields.is_empty() {
+        return Vec::new();
+    }
+    let load = |rest: &RestTriangle| match &fields[rest.panel as usize] {
+        Some(field) => field.load(rest),
+        None => Vector3::zeros(),
+    };
+    rest.iter().map(load).collect()
 }
 
 /// The symmetric 2×2 stress of (s₁₁, s₂₂, s₁₂).
@@ -150,6 +192,7 @@ impl ElementModel<3> for MembraneModel {
         let rest = &self.rest[e];
         let strain = RestTriangle::green_strain(&rest.deformation_gradient(x));
         let mut energy = self.fabric(e).membrane.energy(&strain);
+        energy += self.wrinkled(e, &strain).map_or(0.0, |change| change.energy);
         if let Some(viscosity) = self.viscosity(e) {
             let change = strain - self.strain_t0[e];
             energy += 0.5 * change.dot(&(viscosity * change));

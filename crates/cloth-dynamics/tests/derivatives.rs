@@ -47,6 +47,7 @@ fn measured() -> Fabric {
         membrane: Membrane::Measured(MeasuredMembrane::new(&STRETCH, 1.0)),
         bending: Some(Bending::Measured(MeasuredBending::new(&BEND, 1.0))),
         bending_model: BendingModel::ShapeOperator,
+        tension_field: false,
         strain_limits: Some(StrainLimits { min: 0.95, max: 1.05 }),
         damping: Damping { mass: 0.0, stiffness: 2e-3 },
     }
@@ -224,6 +225,16 @@ fn membrane_measured_and_damped() {
     let (cloth, rest, fabrics) = parts(measured());
     let mut model = MembraneModel::new(cloth.mesh.triangles(), rest, fabrics);
     check(&mut model, &cloth, 0.002);
+}
+
+/// Triangles that buckle within: taut ones, folded ones, slack ones.
+#[test]
+fn membrane_with_a_tension_field() {
+    for fabric in [orthotropic(), measured()] {
+        let (cloth, rest, fabrics) = parts(Fabric { tension_field: true, ..fabric });
+        let mut model = MembraneModel::new(cloth.mesh.triangles(), rest, fabrics);
+        check(&mut model, &cloth, 0.01);
+    }
 }
 
 #[test]

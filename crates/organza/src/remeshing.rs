@@ -191,7 +191,13 @@ impl View {
 
     fn factors(&self, cloth: &ClothState, time: f64, obstacles: &[Obstacle]) -> ViewFactors {
         let settings = &self.view.settings;
-        let windows = self.paths.iter().map(|path| window(path, time, self.frame_s, settings));
+        let windows = self.paths.iter().map(|path| {
+            let guess = self.view.predicted.then(|| {
+                let guess = path.foreseen(time, self.frame_s, settings.window);
+                guess.expect("the scene's cameras and its window have been checked")
+            });
+            window(guess.as_ref().unwrap_or(path), time, self.frame_s, settings)
+        });
         let mut samples: Vec<Sample> = windows.flatten().collect();
         if self.view.occlusion {
             let depths = self.depths(cloth, time, obstacles, &samples);

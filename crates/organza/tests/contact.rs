@@ -20,6 +20,7 @@ fn cotton() -> Fabric {
         membrane: Membrane::Orthotropic(Quadratic::isotropic(400.0, 0.2).unwrap()),
         bending: Some(Bending::Orthotropic(Quadratic::isotropic(1e-5, 0.0).unwrap())),
         bending_model: BendingModel::ShapeOperator,
+        tension_field: false,
         strain_limits: None,
         damping: Damping { mass: 0.0, stiffness: 1e-3 },
     }

@@ -56,6 +56,27 @@ fn cloth_behind_a_body_is_coarse() {
 }
 
 #[test]
+fn a_camera_that_is_guessed_knows_its_past_alone() {
+    // One that stands still holds no surprise.
+    let (known, _) = run(&format!("{OVER} view: {{}},"), 3);
+    let (guessed, _) = run(&format!("{OVER} view: {{predicted: true}},"), 3);
+    assert_eq!(known.cloth, guessed.cloth);
+
+    // Neither is a cut foreseen, at 0.16 s, nor missed afterwards.
+    let cut = "camera: {}, shots: [
+        {keyframes: [{time_s: 0, position: [0.5, 0.5, 1.5], target: [0.5, 0.5, 9], up: [0, 1, 0]}]},
+        {start_s: 0.16, keyframes:
+            [{time_s: 0.16, position: [0.5, 0.5, 1.5], target: [0.5, 0.5, 0], up: [0, 1, 0]}]}],";
+    let factor = |extra: &str, frames: usize| {
+        run(&format!("{cut} {extra}"), frames).1.view.unwrap().mean_factor
+    };
+    let guess = "view: {predicted: true},";
+    assert!(factor("view: {},", 3) > 0.7, "{}", factor("view: {},", 3));
+    assert!(factor(guess, 3) < 0.05, "{}", factor(guess, 3));
+    assert_eq!(factor(guess, 4), 1.0);
+}
+
+#[test]
 fn of_several_cameras_the_finest_wins() {
     let (over, _) = run(&format!("{OVER} view: {{}},"), 3);
     let more = format!("cameras: [{{{OVER}}}]");
@@ -146,6 +167,8 @@ fn mistakes_are_named() {
         ("view: {occlusion: 1},", "occlusion"),
         ("view: {occlusion: true, v_hidden: 2},", "v_hidden is 2"),
         ("view: {cameras: [{camera: {position: [0, 0, 0], target: [0, 0, 0]}}]},", "cameras[0]"),
+        ("view: {predicted: 1},", "predicted"),
+        ("view: {predicted: true, window_frames: 1001},", "window_frames is 1001"),
         ("shots: [{}],", "exactly one of keyframes, gltf"),
         ("shots: [{gltf: {file: 'none.gltf'}}],", "none.gltf"),
     ] {

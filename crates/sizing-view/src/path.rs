@@ -113,6 +113,26 @@ impl CameraPath {
         CameraPath::new(vec![Shot { start: now.time, keys }])
     }
 
+    /// What one who does not know the path would make of it at `time` (s): [`Self::predicted`] from the
+    /// cameras of this frame and of the last one, `frame` (s) before, until `frames` from now. After a
+    /// cut between them, which tells nothing, the camera is taken to stay where it is.
+    ///
+    /// # Errors
+    /// As [`Self::predicted`].
+    pub fn foreseen(
+        &self,
+        time: f64,
+        frame: f64,
+        frames: f64,
+    ) -> Result<CameraPath, ViewError> {
+        let key = |time: f64| Key { time, camera: self.at(time) };
+        let cuts = self.shots.iter().skip(1).map(|shot| shot.start - SAME_TIME);
+        if cuts.into_iter().any(|cut| time - frame < cut && cut <= time) {
+            return Ok(CameraPath::still(self.at(time)));
+        }
+        CameraPath::predicted(key(time - frame), key(time), frames * frame)
+    }
+
     /// The shots.
     pub fn shots(&self) -> &[Shot] {
         &self.shots

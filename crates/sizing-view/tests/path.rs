@@ -2,11 +2,11 @@
 
 mod common;
 
-use common::{camera, look};
+use common::{camera, crowd, look};
 use mesh_core::World3;
 use nalgebra::UnitQuaternion;
 use proptest::prelude::*;
-use sizing_view::{Camera, CameraPath, Key, Shot, ViewError};
+use sizing_view::{Camera, CameraPath, Key, Shot, ViewError, ViewFactors, ViewSettings, window};
 
 fn path(keys: Vec<Key>) -> CameraPath {
     CameraPath::new(vec![Shot { start: 0.0, keys }]).unwrap()
@@ -75,6 +75,70 @@ fn a_guess_goes_on_as_before() {
     assert!(CameraPath::predicted(now, before, 0.2).is_err());
     assert!(CameraPath::predicted(before, now, f64::NAN).is_err());
     assert!(CameraPath::predicted(before, now, 1e6).is_err());
+}
+
+/// Over a path with an even ride, a stop and a cut, the cameras to come are foreseen while it is even,
+/// late where it changes, and not at all before the cut.
+#[test]
+fn a_path_is_foreseen_from_its_past() {
+    let key = |time: f64, x: f64| Key {
+        time,
+        camera: look([x, -4.0, 1.0], [x, 0.0, 1.0], 0.8),
+    };
+    let path = CameraPath::new(vec![
+        Shot { start: 0.0, keys: vec![key(0.0, 0.0), key(1.0, 4.0)] },
+        Shot { start: 2.0, keys: vec![key(2.0, -6.0)] },
+    ])
+    .unwrap();
+    let miss = |time: f64| {
+        let foreseen = path.foreseen(time, 0.04, 5.0).unwrap();
+        (foreseen.at(time + 0.16).position() - path.at(time + 0.16).position()).norm()
+    };
+    assert!(miss(0.4) < 1e-12);
+    assert!((miss(0.96) - 0.12 * 4.0).abs() < 1e-9, "it goes on where the camera stops");
+    assert!(miss(1.2) < 1e-12);
+    assert!(miss(1.96) > 9.0, "nobody foresees a cut");
+    assert!(miss(2.0) < 1e-12, "after a cut the camera is taken to stay");
+}
+
+/// Cloth that comes into the picture: how much of it a guess would have kept too coarse.
+#[test]
+fn what_comes_into_the_picture_is_foreseen() {
+    let cloth = crowd(8, 12, 1.1);
+    let settings = ViewSettings::default();
+    let frame = 0.04;
+    let ride = |speed: &dyn Fn(f64) -> f64| {
+        let mut x = -3.0;
+        let keys = (0..=75).map(|k| {
+            let time = f64::from(k) * frame;
+            x += speed(time) * frame;
+            let camera = look([x, -4.0, 3.0], [x, 0.0, 0.0], 0.6);
+            Key { time, camera }
+        });
+        path(keys.collect())
+    };
+    let missed = |path: &CameraPath| {
+        let (mut late, mut all) = (0usize, 0usize);
+        for k in 1..70 {
+            let time = f64::from(k) * frame;
+            let factors = |path: &CameraPath| {
+                let samples = window(path, time, frame, &settings);
+                ViewFactors::evaluate(&cloth, &samples, &settings).unwrap()
+            };
+            let guess = path.foreseen(time, frame, settings.window).unwrap();
+            let (known, guessed) = (factors(path), factors(&guess));
+            for (known, guessed) in known.values().iter().zip(guessed.values()) {
+                all += usize::from(*known > 0.5);
+                late += usize::from(*known > 0.5 && *guessed < 0.9 * known);
+            }
+        }
+        late as f64 / all as f64
+    };
+    let even = missed(&ride(&|_| 2.0));
+    let uneven = missed(&ride(&|time| 2.0 + 2.0 * (4.0 * time).sin()));
+    println!("missed by the predicted camera: even {even:.4} of the triangles, uneven {uneven:.4}");
+    assert!(even < 1e-3, "{even}");
+    assert!(uneven < 0.02, "{uneven}");
 }
 
 /// Also faster than half a turn over the horizon.

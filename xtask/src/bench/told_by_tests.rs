@@ -28,6 +28,28 @@ pub(super) fn contact(context: &Context, report: &mut Report) -> Result<(), Fail
     Ok(())
 }
 
+/// Adds `view.coarse_sag.plain` and `.tension_field`.
+///
+/// # Errors
+/// If Cargo cannot be started.
+pub(super) fn sag(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    let told = told_by(context, "cloth-dynamics", "tension_field")?;
+    let [fine, plain, wrinkled] = ["fine ", "coarse ", "wrinkled "]
+        .map(|key| told.lines().find_map(|l| metres_after(l, key)));
+    let error = |coarse: Option<f64>| Some((coarse? - fine?).abs());
+    for (name, coarse, who) in
+        [("plain", plain, "as it is"), ("tension_field", wrinkled, "with compression let go")]
+    {
+        let note = format!(
+            "Of the height at which a sheet of one metre hangs between two corners 0.8 m apart, with 4 x 4 \
+             cells, {who}; against 24 x 24 cells."
+        );
+        let figure = error(coarse).and_then(|error| Figure::exact(error, "m", &note));
+        report.add(&format!("view.coarse_sag.{name}"), figure);
+    }
+    Ok(())
+}
+
 /// What a test of a package prints, whether it passes or fails.
 fn told_by(context: &Context, package: &str, test: &str) -> Result<String, Failure> {
     say(format!("test `{test}` of {package}"));
@@ -44,6 +66,12 @@ fn told_by(context: &Context, package: &str, test: &str) -> Result<String, Failu
 fn count_after(line: &str, key: &str) -> Option<u64> {
     let (_, rest) = line.split_once("Tally {")?.1.split_once(key)?;
     rest.split(|c: char| !c.is_ascii_digit()).next()?.parse().ok()
+}
+
+/// The length behind a key, of the line that tells how far sheets hang down.
+fn metres_after(line: &str, key: &str) -> Option<f64> {
+    let (_, rest) = line.split_once("below the corners: ")?.1.split_once(key)?;
+    rest.split_once(" m")?.0.parse().ok()
 }
 
 /// Tangles that came apart, and all.
@@ -65,6 +93,8 @@ mod tests {
             (Some(66801), Some(3))
         );
         assert_eq!(count_after("hits: 3", "hits: "), None);
+        let line = "below the corners: fine 0.53 m, coarse 0.52 m, wrinkled 0.54 m";
+        assert_eq!(metres_after(line, "coarse "), Some(0.52));
         let told = "loop: 0.5 m gone in 3 frames\nbump does not: [1.0] m\ntest a ... ok\n";
         assert_eq!(resolved(told), (1, 2));
     }

@@ -7,10 +7,12 @@
 mod measured_bending;
 mod measured_membrane;
 mod quadratic;
+mod tension_field;
 
 pub use measured_bending::MeasuredBending;
 pub use measured_membrane::MeasuredMembrane;
 pub use quadratic::{NotPositive, Quadratic};
+pub(crate) use tension_field::TensionField;
 
 use nalgebra::{Matrix3, Vector3};
 

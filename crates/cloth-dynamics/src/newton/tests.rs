@@ -22,6 +22,7 @@ fn fabric(membrane: f64, rigidity: f64, strain_limits: Option<StrainLimits>) -> 
         membrane: Membrane::Orthotropic(Quadratic::isotropic(membrane, 0.2).unwrap()),
         bending: Some(Bending::Orthotropic(Quadratic::isotropic(rigidity, 0.0).unwrap())),
         bending_model: BendingModel::ShapeOperator,
+        tension_field: false,
         strain_limits,
         damping: Damping::default(),
     }

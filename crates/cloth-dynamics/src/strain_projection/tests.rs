@@ -16,6 +16,7 @@ fn fabric(strain_limits: Option<StrainLimits>) -> Fabric {
         membrane: Membrane::Orthotropic(Quadratic::isotropic(100.0, 0.2).unwrap()),
         bending: None,
         bending_model: BendingModel::ShapeOperator,
+        tension_field: false,
         strain_limits,
         damping: Damping::default(),
     }

@@ -21,6 +21,7 @@ pub fn fabric(membrane: f64, rigidity: f64, density: f64) -> Fabric {
         bending: (rigidity > 0.0)
             .then(|| Bending::Orthotropic(Quadratic::isotropic(rigidity, 0.0).unwrap())),
         bending_model: BendingModel::ShapeOperator,
+        tension_field: false,
         strain_limits: None,
         damping: Damping::default(),
     }

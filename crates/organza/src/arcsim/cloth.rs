@@ -68,6 +68,7 @@ pub(super) fn translate(
         },
         thickness_m: None,
         strain_limits: material.strain_limits.filter(|_| !notes.is_disabled("strainlimiting")),
+        tension_field: false,
         bending,
         damping: Damping { mass_per_s: 0.0, stiffness_s: material.damping.unwrap_or(0.0) },
         initial_velocity: velocity.and_then(|v| v.linear).unwrap_or_default(),

@@ -54,7 +54,12 @@ pub(super) fn fabric(
             SceneBending::Patch => BendingModel::ShapeOperator,
             SceneBending::Hinge => BendingModel::Hinge,
         },
-        strain_limits: cloth.strain_limits.map(|[min, max]| StrainLimits { min, max }),
+        strain_limits: cloth.strain_limits.map(|[min, max]| StrainLimits {
+            // Wrinkles hide what a triangle is shortened by.
+            min: if cloth.tension_field { 0.0 } else { min },
+            max,
+        }),
+        tension_field: cloth.tension_field,
         damping: Damping { mass: cloth.damping.mass_per_s, stiffness: cloth.damping.stiffness_s },
     })
 }

@@ -136,9 +136,10 @@ fn options(out: &mut String, cloth: &Cloth) -> fmt::Result {
         None => write!(out, "  remeshing: none, the mesh is fixed")?,
     }
     match cloth.strain_limits {
-        Some([min, max]) => writeln!(out, "; stretch limits {min} to {max}"),
-        None => writeln!(out, "; stretch limits: none"),
+        Some([min, max]) => write!(out, "; stretch limits {min} to {max}")?,
+        None => write!(out, "; stretch limits: none")?,
     }
+    writeln!(out, "{}", if cloth.tension_field { "; a tension field" } else { "" })
 }
 
 /// Area (m²) and mass (kg) of some panels.

@@ -64,6 +64,8 @@ pub struct View {
     pub settings: ViewSettings,
     /// Whether what stands in the way counts.
     pub occlusion: bool,
+    /// Whether the cameras' future is guessed from their past.
+    pub predicted: bool,
     /// Cameras besides that of the scene.
     pub more_cameras: Vec<CameraPath>,
 }
@@ -125,6 +127,8 @@ pub struct Cloth {
     pub thickness_m: Option<f64>,
     /// Smallest and largest principal stretch, min < 1 < max (1).
     pub strain_limits: Option<[f64; 2]>,
+    /// Whether triangles give way to compression as wrinkled ones would.
+    pub tension_field: bool,
     /// How bending is measured.
     pub bending: BendingModel,
     /// Damping inside the cloth.

@@ -27,6 +27,8 @@ impl World {
         note(self.environment.wind.is_none(), "wind: none in the scene");
         let limits = self.fabrics.iter().any(|f| f.strain_limits.is_some());
         note(!limits, "strain limits: none in the scene");
+        let fields = self.fabrics.iter().any(|f| f.tension_field);
+        note(!fields, "tension field: all cloth resists compression");
         note(self.fabrics.iter().all(|f| f.bending.is_none()), "bending: no fabric resists it");
         note(self.handles.list().is_empty(), "handles: none in the scene");
         note(self.fluid.is_none(), "fluid: none in the scene");

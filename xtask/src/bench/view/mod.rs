@@ -1,13 +1,14 @@
 //! Mesh sizes by view (Koh2014): what they save, and what that costs the picture.
 
 mod growth;
+mod options;
 mod plot;
 mod quality;
 mod table;
 
 use super::program::Program;
 use super::report::Report;
-use super::{Benchmark, Context};
+use super::{Benchmark, Context, told_by_tests};
 use crate::command::Failure;
 use serde_json::Value;
 use std::path::PathBuf;
@@ -75,8 +76,10 @@ fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
         quality::error(context, report, scene)?;
         context.save(report)?;
     }
+    context.part(report, "view/tests", |report| told_by_tests::sag(context, report))?;
     quality::distance(context, report)?;
     context.save(report)?;
+    options::run(context, report)?;
     growth::run(context, report)
 }
 

@@ -40,6 +40,11 @@ pub struct ClothFile {
     /// means no limit (1).
     #[serde(default)]
     pub strain_limits: Option<[f64; 2]>,
+    /// Whether triangles give way to compression at the load at which cloth of their size buckles, as if
+    /// by wrinkles that the mesh is too coarse for (tension field). The smallest stretch of
+    /// `strain_limits` then has no meaning.
+    #[serde(default)]
+    pub tension_field: bool,
     /// How bending is measured on the mesh.
     #[serde(default)]
     pub bending: BendingModel,

@@ -210,6 +210,7 @@ mod default {
             size_min_px,
             size_max_m: size_max,
             occlusion: false,
+            predicted: false,
             v_hidden,
             cameras: Vec::new(),
         }

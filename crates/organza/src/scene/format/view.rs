@@ -97,6 +97,9 @@ pub struct ViewFile {
     pub occlusion: bool,
     /// Edges of cloth that is hidden may be longer by one over this (1); counts with `occlusion`.
     pub v_hidden: f64,
+    /// Whether only the past of the camera is used: what it will see is guessed from how it moved over the
+    /// last frame, as where somebody steers it. Cuts are not foreseen.
+    pub predicted: bool,
     /// More cameras that see the cloth, for stereo or shadows; what any of them sees is fine.
     pub cameras: Vec<ViewCameraFile>,
 }

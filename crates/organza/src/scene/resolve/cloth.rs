@@ -65,6 +65,7 @@ pub(super) fn resolve(
         multipliers,
         thickness_m: cloth.thickness_m,
         strain_limits: cloth.strain_limits,
+        tension_field: cloth.tension_field,
         bending: cloth.bending,
         damping: cloth.damping,
         initial_velocity: cloth.initial_velocity,
