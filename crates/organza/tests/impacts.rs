@@ -82,7 +82,7 @@ fn what_cannot_give_way_is_an_error() {
 fn a_hit_that_nothing_is_done_about_is_not_forgotten() {
     for places in [[SOFT, HARD], [HARD, SOFT]] {
         let (secured, n_hits) = stage(&places);
-        let place = secured.expect_err(&format!("{n_hits} hits are left")).place;
+        let Err(Blocked { place }) = secured else { panic!("{n_hits} hits are left") };
         assert!(place.x > 0.2, "{place}");
     }
 }
