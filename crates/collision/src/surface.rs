@@ -170,6 +170,12 @@ impl Surface {
         &self.rings
     }
 
+    /// What a triangle owns: bits 0–2 for its corners, bits 3–5 for its edges.
+    #[inline]
+    pub(crate) fn owned(&self, triangle: u32) -> u8 {
+        self.owned[triangle as usize]
+    }
+
     /// The vertices that a triangle owns.
     #[inline]
     pub fn owned_vertices(&self, triangle: u32) -> impl Iterator<Item = u32> + use<> {

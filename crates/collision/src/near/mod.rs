@@ -2,14 +2,16 @@
 //!
 //! Three sieves, each of which keeps all that the next one has to see: groups of four triangles by the
 //! tree, pairs of triangles by common vertices around which nothing is near ([`fans`]) and by separating
-//! axes ([`quads`]), and pairs of features by their distance.
+//! axes ([`quads`]), and pairs of features ([`features`]) by their distance.
 
 mod fans;
+mod features;
 mod lanes;
 mod quads;
 
 use crate::pairs::{Body, Candidate, Pair, PairKind};
 use crate::{Aabb, Bvh, distance};
+use features::Gap;
 use mesh_core::{World3, par};
 use quads::{Frame, Quad, Quads};
 
@@ -32,29 +34,12 @@ pub(crate) fn within(
         let hits = first.without_common(second, first.overlaps(second) & of);
         for_each_meeting(first, second, hits, |a, b| pairs.push([a, b]));
     }));
-    let surface = body.surface();
     let found = par::collect(pairs.len(), |i, found| {
         let [a, b] = pairs[i];
         let reach = reach_of((body, a), (body, b));
-        for (owner, other) in [(a, b), (b, a)] {
-            let corners = surface.triangles()[other as usize];
-            for v in surface.owned_vertices(owner) {
-                if !corners.contains(&v) {
-                    let pair = Pair { kind: PairKind::VertexTriangle, a: v, b: other };
-                    found.extend(near(pair, body, body, reach, &most));
-                }
-            }
-        }
-        for e in surface.owned_edges(a) {
-            let [p, q] = surface.edges()[e as usize];
-            for f in surface.owned_edges(b) {
-                let [r, s] = surface.edges()[f as usize];
-                if (p != r) & (p != s) & (q != r) & (q != s) {
-                    let pair = Pair { kind: PairKind::EdgeEdge, a: e.min(f), b: e.max(f) };
-                    found.extend(near(pair, body, body, reach, &most));
-                }
-            }
-        }
+        features::look((body, a), (body, b), true, reach, |pair| {
+            found.extend(near(pair, body, body, &most));
+        });
     });
     sorted(found)
 }
@@ -82,24 +67,14 @@ pub(crate) fn between(
     let frame = Frame::of(&bounds);
     let first = Quads::new(a, tree_a, &used[0], &frame, |_| false);
     let second = Quads::new(b, tree_b, &used[1], &frame, |_| false);
-    let (surface, other) = (a.surface(), b.surface());
     let any = |_: &[u32; 4], _: PairKind| f64::INFINITY;
     let found = par::collect(groups.len(), |g, found| {
         let (first, second) = (first.of(groups[g][0]), second.of(groups[g][1]));
         for_each_meeting(first, second, first.overlaps(second), |s, t| {
             let reach = reach_of((a, s), (b, t));
-            let mut look = |pair: Pair| found.extend(near(pair, a, b, reach, &any));
-            for v in surface.owned_vertices(s) {
-                look(Pair { kind: PairKind::VertexTriangle, a: v, b: t });
-            }
-            for v in other.owned_vertices(t) {
-                look(Pair { kind: PairKind::TriangleVertex, a: s, b: v });
-            }
-            for e in surface.owned_edges(s) {
-                for f in other.owned_edges(t) {
-                    look(Pair { kind: PairKind::EdgeEdge, a: e, b: f });
-                }
-            }
+            features::look((a, s), (b, t), false, reach, |pair| {
+                found.extend(near(pair, a, b, &any));
+            });
         });
     });
     sorted(found)
@@ -146,29 +121,17 @@ fn reach_of((a, s): (Body<'_>, u32), (b, t): (Body<'_>, u32)) -> f64 {
 }
 
 /// A pair with its distance at the start, if the relative motion can use it up and the swept boxes
-/// overlap. It certainly reaches no further than `most`, and its thickness counts
-/// up to a limit.
+/// overlap. Its thickness counts up to a limit.
 #[inline]
 fn near(
     pair: Pair,
     a: Body<'_>,
     b: Body<'_>,
-    most: f64,
     limit: &impl Fn(&[u32; 4], PairKind) -> f64,
 ) -> Option<(Pair, f64)> {
     let vertices = pair.vertices(a.surface(), b.surface());
     let x = &pair.positions(vertices, a.x_t0(), b.x_t0());
     let is_edges = pair.kind == PairKind::EdgeEdge;
-    // A gap along the line of points that are nearest if rounding does no harm, which tells most often:
-    // the distance itself, right for all elements, takes several times longer.
-    let axis = if is_edges { between_edges(x) } else { to_triangle(x) };
-    let [p, q, r, s] = x.map(|y| axis.dot(&(y - x[0])));
-    let gap = if is_edges { p.min(q) - r.max(s) } else { p - q.max(r).max(s) };
-    let length = axis.norm_squared() * (1.0 + 1e-6);
-    let is_beyond = |reach: f64| gap > 0.0 && gap * gap > reach * reach * length;
-    if is_beyond(most) {
-        return None;
-    }
     let Candidate { x_t1, thickness, .. } = &Candidate::of(pair, a, b);
     let thickness = thickness.min(limit(&vertices, pair.kind));
     let m: [World3; 4] = std::array::from_fn(|k| x_t1[k] - x[k]);
@@ -179,7 +142,8 @@ fn near(
         apart(0, 1).max(apart(0, 2)).max(apart(0, 3))
     };
     let reach = (most.sqrt() + thickness) * (1.0 + ROUNDING);
-    if is_beyond(reach) {
+    let gap = if is_edges { Gap::between_edges(x) } else { Gap::to_triangle(x) };
+    if gap.is_beyond(reach) {
         return None;
     }
     let squared = if is_edges {
@@ -189,45 +153,6 @@ fn near(
     };
     let is_near = squared <= reach * reach && boxes_overlap(pair, a, b);
     is_near.then(|| (pair, squared.sqrt()))
-}
-
-/// The way to the first of two edges from the second, roughly: as Ericson2005 §5.1.9.
-#[inline]
-fn between_edges(x: &[World3; 4]) -> World3 {
-    let (d, e, r) = (x[1] - x[0], x[3] - x[2], x[0] - x[2]);
-    let (dd, de, ee) = (d.norm_squared(), d.dot(&e), e.norm_squared());
-    let (dr, er) = (d.dot(&r), e.dot(&r));
-    let s = ((de * er - dr * ee) / (dd * ee - de * de)).clamp(0.0, 1.0);
-    let t = ((de * s + er) / ee).clamp(0.0, 1.0);
-    let s = ((de * t - dr) / dd).clamp(0.0, 1.0);
-    r + d * s - e * t
-}
-
-/// The way to a vertex from a triangle, roughly: from the plane, or from the edge that the vertex is
-/// beyond.
-#[inline]
-fn to_triangle(x: &[World3; 4]) -> World3 {
-    let (e, f, r) = (x[2] - x[1], x[3] - x[1], x[0] - x[1]);
-    let (ee, ef, ff) = (e.norm_squared(), e.dot(&f), f.norm_squared());
-    let (er, fr) = (e.dot(&r), f.dot(&r));
-    let size = ee * ff - ef * ef;
-    // Weights of the second and the third corner, times the size.
-    let (v, w) = (ff * er - ef * fr, ee * fr - ef * er);
-    let u = size - v - w;
-    // The nearest point of the edge across the corner with the least weight, if that is negative.
-    let beyond = |from: &World3, to: &World3| {
-        let (side, way) = (to - from, x[0] - from);
-        way - side * (way.dot(&side) / side.norm_squared()).clamp(0.0, 1.0)
-    };
-    if u.min(v).min(w) >= 0.0 {
-        r - (e * v + f * w) / size
-    } else if u <= v && u <= w {
-        beyond(&x[2], &x[3])
-    } else if v <= w {
-        beyond(&x[1], &x[3])
-    } else {
-        beyond(&x[1], &x[2])
-    }
 }
 
 fn boxes_overlap(pair: Pair, a: Body<'_>, b: Body<'_>) -> bool {

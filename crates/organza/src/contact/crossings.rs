@@ -2,7 +2,7 @@
 
 use super::{ContactSettings, Obstacles};
 use collision::intersect::EdgeTriangle;
-use collision::{Surface, intersect};
+use collision::{Aabb, Surface, intersect};
 use mesh_core::{ClothState, World3};
 
 /// Edges that pass through triangles.
@@ -44,8 +44,9 @@ impl Crossings {
             let crossings = intersect::within(&surface, x, &tree);
             found.extend(crossings.iter().map(|c| (ball(own, own, c), false)));
         }
-        if let Some(obstacles) = obstacles {
-            let y = (obstacles.motion)(time);
+        let bodies = obstacles.map(|obstacles| (obstacles, (obstacles.motion)(time)));
+        let cloth_box = tree.bounds();
+        if let Some((obstacles, y)) = bodies.filter(|(_, y)| Aabb::around(y).overlaps(&cloth_box)) {
             let tree_y = obstacles.surface.tree(&y);
             let body = (&obstacles.surface, y.as_slice());
             let [cloth_side, body_side] = [(own.0, own.1, &tree), (body.0, body.1, &tree_y)];

@@ -220,18 +220,20 @@ impl SurfaceContact {
         if near.is_empty() || (self.settings.friction == 0.0 && !slides) {
             return;
         }
-        let before = moving.map(|moving| (moving.fixed.motion)(times[1] - stage.h));
+        let mover = moving.filter(|moving| moving.fixed.moves);
+        let before = mover.map(|moving| (moving.fixed.motion)(times[1] - stage.h));
         for (sides, closest) in near {
             let reach = self.reach(sides, closest.distance);
             let [_, slope, _] = penalty(closest.distance, reach);
             let (mut mu, mut way) = (self.settings.friction, World3::zeros());
-            if let (Some(moving), Some(before), true) = (moving, &before, !sides.is_within_cloth())
-            {
+            if let (Some(moving), false) = (moving, sides.is_within_cloth()) {
                 mu = 0.0;
                 for k in (0..4).filter(|&k| !sides.is_cloth[k]) {
                     let i = sides.vertices[k] as usize;
                     mu = f64::max(mu, moving.fixed.friction[i]);
-                    way += (moving.then[i] - before[i]) * closest.weights[k];
+                    if let Some(before) = &before {
+                        way += (moving.then[i] - before[i]) * closest.weights[k];
+                    }
                 }
             }
             let most = -slope * self.stiffness(sides, closest.distance) * mu;
@@ -267,7 +269,7 @@ impl Contact for SurfaceContact {
         target.iter_mut().zip(&self.off_target).for_each(|(target, off)| *target += off);
         // What the last stage found serves this one too: what it lacks comes from afar at a speed that
         // only the test of the whole way has to stop.
-        if !self.candidates.are_around(stage.x_t0, self.obstacle_way().0) {
+        if !self.candidates.are_around(stage.x_t0, self.moving_way().0) {
             self.search(stage.x_t0, &target);
         }
         let pairs = &self.candidates.pairs;

@@ -2,7 +2,7 @@
 
 use super::ContactSettings;
 use crate::obstacle::Obstacle;
-use collision::{Bvh, Surface, SurfaceError};
+use collision::{Aabb, Bvh, Surface, SurfaceError};
 use mesh_core::World3;
 use std::sync::Arc;
 
@@ -61,17 +61,23 @@ pub(super) struct Moving {
     pub(super) then: Vec<World3>,
     /// The times of these (s).
     times: [f64; 2],
+    /// The box around both (m).
+    bounds: Aabb,
+    /// The largest thickness of their own (m).
+    thickest: Option<f64>,
 }
 
 impl Moving {
     pub(super) fn new(fixed: &Obstacles) -> Moving {
         Moving {
             fixed: fixed.clone(),
-            tree: Bvh::build(0, |_| collision::Aabb::EMPTY),
+            tree: Bvh::build(0, |_| Aabb::EMPTY),
             tree_way: [Vec::new(), Vec::new()],
             now: Vec::new(),
             then: Vec::new(),
             times: [f64::NAN; 2],
+            bounds: Aabb::EMPTY,
+            thickest: fixed.thickness.iter().flatten().copied().reduce(f64::max),
         }
     }
 
@@ -87,8 +93,21 @@ impl Moving {
         !self.fixed.moves || times.into_iter().all(|time| (self.fixed.motion)(time) == self.then)
     }
 
-    /// Goes to the stage between two times (s).
+    /// The largest radius of any of them (m), if not a larger one.
+    pub(super) fn largest_radius(&self, settings: &ContactSettings) -> f64 {
+        0.5 * self.thickest.map_or(settings.thickness, |own| own.max(settings.thickness))
+    }
+
+    /// The box around the way of all (m).
+    pub(super) fn bounds(&self) -> &Aabb {
+        &self.bounds
+    }
+
+    /// Goes to the stage between two times (s). What never moves does so once.
     pub(super) fn go_to(&mut self, [from, to]: [f64; 2]) {
+        if !self.fixed.moves && !self.now.is_empty() {
+            return;
+        }
         if self.times[1] == from {
             std::mem::swap(&mut self.now, &mut self.then);
         } else if self.times[0] != from {
@@ -96,5 +115,6 @@ impl Moving {
         }
         self.then = (self.fixed.motion)(to);
         self.times = [from, to];
+        self.bounds = Aabb::around(self.now.iter().chain(&self.then));
     }
 }

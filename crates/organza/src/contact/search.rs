@@ -13,7 +13,7 @@ impl SurfaceContact {
     /// Makes the candidates complete for the way of the cloth from the start `x` of the stage to `x_t1`
     /// (m), while obstacles go theirs; true if they had to be sought anew.
     pub(super) fn cover(&mut self, x: &[World3], x_t1: &[World3]) -> bool {
-        let (now, then) = self.obstacle_way();
+        let (now, then) = self.moving_way();
         let is_new = !self.candidates.are_complete([x, x_t1], [now, then]);
         if is_new {
             self.search(x, x_t1);
@@ -23,6 +23,12 @@ impl SurfaceContact {
 
     pub(super) fn obstacle_way(&self) -> (&[World3], &[World3]) {
         self.obstacles.as_ref().map_or((&[], &[]), |m| (&m.now, &m.then))
+    }
+
+    /// The same if any obstacle moves ever, and nothing if not: none of them is off its way then.
+    pub(super) fn moving_way(&self) -> (&[World3], &[World3]) {
+        let moves = self.obstacles.as_ref().is_some_and(|m| m.fixed.moves);
+        if moves { self.obstacle_way() } else { (&[], &[]) }
     }
 
     /// Finds candidates anew, for this way and for what is near it.
@@ -46,16 +52,13 @@ impl SurfaceContact {
         }
         if let Some(moving) = &mut self.obstacles {
             let settings = &self.settings;
-            let halves: Vec<f64> =
-                (0..moving.now.len() as u32).map(|v| moving.radius(v, settings) + off).collect();
-            let largest = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
-            let around = |points: [&[World3]; 2], room: f64| {
-                Aabb::around(points.into_iter().flatten()).grown(room)
-            };
-            let room = largest(&self.radius) + largest(&halves) + off;
-            let is_near =
-                around([x, x_t1], room).overlaps(&around([&moving.now, &moving.then], room));
-            if is_near {
+            let largest = self.radius.iter().copied().fold(0.0, f64::max);
+            let room = largest + moving.largest_radius(settings) + 2.0 * off;
+            let around = Aabb::around(x.iter().chain(x_t1)).grown(room);
+            if around.overlaps(moving.bounds()) {
+                let halves: Vec<f64> = (0..moving.now.len() as u32)
+                    .map(|v| moving.radius(v, settings) + off)
+                    .collect();
                 let room = |v: u32| halves[v as usize];
                 let other = Body::moving(&moving.fixed.surface, &moving.now, &moving.then, &room);
                 if moving.tree_way[0] != moving.now || moving.tree_way[1] != moving.then {
@@ -78,7 +81,7 @@ impl SurfaceContact {
             (left <= sides.thickness + 2.0 * off).then_some((sides, distance))
         });
         let (pairs, distances) = pairs.into_iter().flatten().unzip();
-        let (now, then) = self.obstacle_way();
+        let (now, then) = self.moving_way();
         self.candidates = Candidates::new(pairs, off, [x, x_t1], [now, then]);
         self.distances = distances;
     }
