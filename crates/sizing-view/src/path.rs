@@ -119,12 +119,7 @@ impl CameraPath {
     ///
     /// # Errors
     /// As [`Self::predicted`].
-    pub fn foreseen(
-        &self,
-        time: f64,
-        frame: f64,
-        frames: f64,
-    ) -> Result<CameraPath, ViewError> {
+    pub fn foreseen(&self, time: f64, frame: f64, frames: f64) -> Result<CameraPath, ViewError> {
         let key = |time: f64| Key { time, camera: self.at(time) };
         let cuts = self.shots.iter().skip(1).map(|shot| shot.start - SAME_TIME);
         if cuts.into_iter().any(|cut| time - frame < cut && cut <= time) {

@@ -81,10 +81,7 @@ fn a_guess_goes_on_as_before() {
 /// late where it changes, and not at all before the cut.
 #[test]
 fn a_path_is_foreseen_from_its_past() {
-    let key = |time: f64, x: f64| Key {
-        time,
-        camera: look([x, -4.0, 1.0], [x, 0.0, 1.0], 0.8),
-    };
+    let key = |time: f64, x: f64| Key { time, camera: look([x, -4.0, 1.0], [x, 0.0, 1.0], 0.8) };
     let path = CameraPath::new(vec![
         Shot { start: 0.0, keys: vec![key(0.0, 0.0), key(1.0, 4.0)] },
         Shot { start: 2.0, keys: vec![key(2.0, -6.0)] },
@@ -135,10 +132,11 @@ fn what_comes_into_the_picture_is_foreseen() {
         late as f64 / all as f64
     };
     let even = missed(&ride(&|_| 2.0));
-    let uneven = missed(&ride(&|time| 2.0 + 2.0 * (4.0 * time).sin()));
+    let uneven = missed(&ride(&|time| 2.0 + 6.0 * (15.0 * time).sin()));
     println!("missed by the predicted camera: even {even:.4} of the triangles, uneven {uneven:.4}");
     assert!(even < 1e-3, "{even}");
-    assert!(uneven < 0.02, "{uneven}");
+    // At 9 g.
+    assert!(uneven > 0.0 && uneven < 0.1, "{uneven}");
 }
 
 /// Also faster than half a turn over the horizon.
