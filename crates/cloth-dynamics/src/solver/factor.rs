@@ -21,11 +21,6 @@ use super::sums::dot;
 
 /// A number that a factor may be made of: `f32` or `f64`.
 pub(super) trait Real: RealField + Copy {
-    /// Entries below this share of the largest diagonal are left out of a factor: where cloth is
-    /// flat, the coupling between its plane and its normal fades away from what bends it like a
-    /// geometric series, and products of such numbers are subnormal, which costs the processor more
-    /// than a hundred cycles each.
-    const NEGLIGIBLE: f64;
     /// Rounds to this type.
     fn from_f64(value: f64) -> Self;
     /// Exact.
@@ -33,9 +28,6 @@ pub(super) trait Real: RealField + Copy {
 }
 
 impl Real for f64 {
-    // Subnormal numbers of this type do not occur.
-    const NEGLIGIBLE: f64 = 0.0;
-
     fn from_f64(value: f64) -> Self {
         value
     }
@@ -45,8 +37,6 @@ impl Real for f64 {
 }
 
 impl Real for f32 {
-    const NEGLIGIBLE: f64 = 1e-10;
-
     fn from_f64(value: f64) -> Self {
         value as f32
     }
@@ -119,11 +109,7 @@ impl<T: Real> Factor<T> {
         let diagonals = (0..matrix.n_vertices()).map(|i| matrix.diagonal(i).diagonal().amax());
         self.scale = power_of_two(diagonals.fold(0.0, f64::max));
         let inverse = 1.0 / self.scale;
-        let rounded = |v: f64| {
-            let v = v * inverse;
-            T::from_f64(if v.abs() < T::NEGLIGIBLE { 0.0 } else { v })
-        };
-        self.analysis.permute(matrix.blocks(), rounded, &mut self.matrix);
+        self.analysis.permute(matrix.blocks(), |v| T::from_f64(v * inverse), &mut self.matrix);
         let result = supernodal::factorize_supernodal_numeric_llt(
             &mut self.values,
             SparseColMatRef::new(self.analysis.scalar.as_ref(), &self.matrix),
