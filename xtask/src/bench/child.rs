@@ -1,6 +1,6 @@
 //! A child process, run to its end: CPU seconds and peak memory.
 
-use super::cpu_time;
+use super::{cpu_time, machine};
 use crate::command::Failure;
 use std::fs;
 use std::process::{Command, ExitStatus};
@@ -36,7 +36,9 @@ pub(super) fn run(command: &mut Command, limit: Option<Duration>) -> Result<Ende
     let cannot_wait = |error| Failure::Unable(format!("cannot wait: {error}"));
     let mut peak_mb = None;
     let ended = loop {
-        peak_mb = fs::read_to_string(&status).ok().and_then(|text| peak(&text)).or(peak_mb);
+        // proc_pid_status(5); a process that has ended has no such line.
+        let text = fs::read_to_string(&status).ok();
+        peak_mb = text.and_then(|text| machine::megabytes(&text, "VmHWM:")).or(peak_mb);
         if let Some(ended) = child.try_wait().map_err(cannot_wait)? {
             break Some(ended);
         }
@@ -49,23 +51,9 @@ pub(super) fn run(command: &mut Command, limit: Option<Duration>) -> Result<Ende
     Ok(Ended { status: ended, cpu_s: cpu_time::of_children()? - before, peak_mb })
 }
 
-/// `VmHWM` of proc_pid_status(5), which is in KiB (MB). A process that has ended has none.
-fn peak(status: &str) -> Option<f64> {
-    let rest = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kib: f64 = rest.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kib * 1024.0 / 1e6)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_peak_is_one_of_many_lines() {
-        let status = "Name:\tx\nVmPeak:\t  9 kB\nVmHWM:\t  250000 kB\nVmRSS:\t 1 kB\n";
-        assert_eq!(peak(status), Some(256.0));
-        assert_eq!(peak("Name:\tx\nState:\tZ (zombie)\n"), None);
-    }
 
     #[cfg(target_os = "linux")]
     #[test]

@@ -28,20 +28,7 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 const LATTICE: [usize; 2] = [25, 25];
 
 fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
-    let scenes: Vec<&Scene> = match &context.options.scene {
-        None => SCENES.iter().collect(),
-        Some(path) => {
-            let name = path.file_stem().unwrap_or_default().to_string_lossy();
-            let scenes: Vec<&Scene> = SCENES.iter().filter(|scene| scene.name == name).collect();
-            if scenes.is_empty() {
-                let known: Vec<&str> = SCENES.iter().map(|scene| scene.name).collect();
-                let known = known.join(", ");
-                report.remark(&format!("`{name}` is none of the scenes of pareto: {known}."));
-            }
-            scenes
-        }
-    };
-    for scene in scenes {
+    for scene in context.chosen(report, SCENES, |scene| scene.name) {
         let part = format!("pareto/{}", scene.name);
         context.part(report, &part, |report| sweep(context, report, scene))?;
     }
