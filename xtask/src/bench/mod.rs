@@ -21,6 +21,7 @@ mod number;
 mod options;
 mod pareto;
 mod pay;
+mod peers;
 mod points;
 mod program;
 mod provenance;
@@ -74,6 +75,7 @@ const BENCHMARKS: &[Benchmark] = &[
     stability::BENCHMARK,
     stiff::BENCHMARK,
     scaling::BENCHMARK,
+    peers::BENCHMARK,
     pay::BENCHMARK,
 ];
 

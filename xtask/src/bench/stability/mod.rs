@@ -124,7 +124,7 @@ fn count(report: &mut Report) {
         0 => "No cell is refused.".to_owned(),
         n => format!("The {n} cells that end with an error, and what it says."),
     };
-    report.table_of("stability.refused", table(refused, &note));
+    report.table_of("stability.refused_cells", table(refused, &note));
 }
 
 fn table(rows: Vec<Vec<Cell>>, note: &str) -> Table {
@@ -153,7 +153,7 @@ mod tests {
         let values = ["cells", "stable", "refused", "unstable"]
             .map(|name| report.value(&format!("stability.{name}")));
         assert_eq!(values, [3.0, 1.0, 1.0, 1.0].map(Some));
-        let listed = report.tables().find(|(name, _)| *name == "stability.refused").unwrap().1;
+        let listed = report.tables().find(|(name, _)| *name == "stability.refused_cells").unwrap().1;
         assert_eq!(listed.rows, [refused]);
     }
 }
