@@ -8,9 +8,30 @@ use super::statistics::{median, power_law};
 use super::{Benchmark, Context, arcsim, told_by_tests};
 use crate::command::{Failure, say};
 
+/// The names of its figures.
+const FIGURES: &[&str] = &[
+    "contact.*.intersections",
+    "contact.*.cpu_s_per_frame",
+    "contact.*.peak_mb",
+    "contact.*.share",
+    "contact.scaling",
+    "contact.scaling.exponent",
+    "contact.scaling.*.s_per_step",
+    "contact.distant_obstacle.overhead",
+    "contact.ccd.false_negatives",
+    "contact.tangles.resolved",
+    "contact.sphere.arcsim_*_cpu_s",
+    "contact.sphere.arcsim_*_cpu_ratio",
+    "contact.sphere.arcsim_*_peak_mb",
+    "contact.sphere.arcsim_*_faces.*",
+    "contact.sphere.arcsim_*_stretch.*",
+    "contact.sphere.arcsim_*_intersections",
+];
+
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "contact",
     summary: "crossings and cost of the scenes with contact, growth with the mesh, ARCSim's sphere",
+    figures: FIGURES,
     run,
 };
 

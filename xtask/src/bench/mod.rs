@@ -17,6 +17,7 @@ mod flag;
 mod html;
 mod kernels;
 mod machine;
+mod names;
 mod number;
 mod options;
 mod pareto;
@@ -57,10 +58,12 @@ pub const COMMAND: Command = Command {
 
 /// One benchmark.
 struct Benchmark {
-    /// What is typed after `cargo xtask bench`; its figures begin with it.
+    /// What is typed after `cargo xtask bench`.
     name: &'static str,
     /// One line for the help.
     summary: &'static str,
+    /// Names of its figures and tables, where `*` stands for anything without a dot.
+    figures: &'static [&'static str],
     run: fn(&Context, &mut Report) -> Result<(), Failure>,
 }
 
@@ -208,6 +211,10 @@ fn run(root: &Path, arguments: &[String]) -> Result<(), Failure> {
     for benchmark in chosen {
         let measure = |report: &mut Report| (benchmark.run)(&context, report);
         context.part(&mut report, benchmark.name, measure)?;
+        // Figures of another scene bear its name.
+        if context.options.scene.is_none() {
+            names::check(&mut report, benchmark);
+        }
     }
     let around = report.begin(KERNELS);
     kernels::take(&mut report, root);

@@ -7,9 +7,14 @@ use super::surface::Surface;
 use super::{Benchmark, Context};
 use crate::command::{Failure, say};
 
+/// The names of its figures.
+const FIGURES: &[&str] =
+    &["stiff.hang64.*.cpu_s", "stiff.hang64.*.cpu_ratio", "stiff.hang64.*.drop_m"];
+
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "stiff",
     summary: "a sheet of 64 x 64 vertices at steps of 40 ms, up to 10^4 times as stiff",
+    figures: FIGURES,
     run,
 };
 

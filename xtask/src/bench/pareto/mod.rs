@@ -18,9 +18,23 @@ use scene::{Plan, SCENES, Scene};
 use settings::Setting;
 use std::fs;
 
+/// The names of its figures.
+const FIGURES: &[&str] = &[
+    "pareto.*.floor",
+    "pareto.*.reference.cpu_s",
+    "pareto.*.reference.peak_mb",
+    "pareto.*.cpu_ratio.*",
+    "pareto.*.stage_s.*.*",
+    "pareto.*.runs",
+    "pareto.*.fixed",
+    "pareto.*.adaptive",
+    "pareto.*.view",
+];
+
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "pareto",
     summary: "error against CPU time as the knobs sweep, on fixed and adaptive meshes",
+    figures: FIGURES,
     run,
 };
 

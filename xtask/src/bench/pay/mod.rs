@@ -16,9 +16,20 @@ use super::{Benchmark, Context};
 use crate::command::{Failure, say};
 use part::{PARTS, Part};
 
+/// The names of its figures.
+const FIGURES: &[&str] = &[
+    "pay.*.off",
+    "pay.*.idle",
+    "pay.*.off_work",
+    "pay.*.idle_work",
+    "pay.max_difference",
+    "pay.max_work_difference",
+];
+
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "pay",
     summary: "optional parts of a scene: absent, switched off, and on but idle",
+    figures: FIGURES,
     run,
 };
 

@@ -19,7 +19,12 @@ pub(super) fn run(context: &Context, report: &mut Report) -> Result<(), Failure>
     for &count in COUNTS[quick] {
         let size = count as f64;
         if samples.last().is_some_and(|last| last.forbids(size)) {
-            too_large(report, name, size, &format!("it may take more than {LIMIT_S:.0} CPU seconds"));
+            too_large(
+                report,
+                name,
+                size,
+                &format!("it may take more than {LIMIT_S:.0} CPU seconds"),
+            );
             break;
         }
         let simulation = Simulation {

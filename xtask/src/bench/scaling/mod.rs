@@ -13,9 +13,24 @@ use super::statistics::{median, power_law, spread};
 use super::{Benchmark, Context};
 use crate::command::{Failure, say};
 
+/// The names of its figures.
+const FIGURES: &[&str] = &[
+    "scaling.vertices",
+    "scaling.vertices_fast",
+    "scaling.restrained",
+    "scaling.resting",
+    "scaling.characters",
+    "scaling.*.exponent",
+    "scaling.threads.speedup",
+    "scaling.threads.cpu_ratio",
+    "memory.bytes_per_vertex",
+    "memory.bytes_per_vertex_fast",
+];
+
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "scaling",
     summary: "growth of cost with vertices, characters, moving vertices and threads; memory",
+    figures: FIGURES,
     run,
 };
 
@@ -102,9 +117,8 @@ impl Growth {
         let Growth { name, plot, axis, note } = self;
         // An exponent for each repetition tells its noise.
         let n = samples.iter().map(|s| s.cpu_s.len()).min().unwrap_or(0);
-        let of = |k: usize| -> Vec<[f64; 2]> {
-            samples.iter().map(|s| [s.size, s.cpu_s[k]]).collect()
-        };
+        let of =
+            |k: usize| -> Vec<[f64; 2]> { samples.iter().map(|s| [s.size, s.cpu_s[k]]).collect() };
         let exponents: Vec<f64> = (0..n).filter_map(|k| Some(power_law(&of(k))?.0)).collect();
         say(format!("  grows as the power {:.2}", median(&exponents).unwrap_or(f64::NAN)));
         let about = format!(

@@ -78,7 +78,8 @@ fn sheets(
 fn scene(moving: usize, resting: usize) -> String {
     let (mut cloths, mut handles) = (String::new(), String::new());
     for k in 0..moving + resting {
-        let rests = "restraint: { thresholds: { speed: { rest_m_per_s: 1e3, full_m_per_s: 4e3 } } },";
+        let rests =
+            "restraint: { thresholds: { speed: { rest_m_per_s: 1e3, full_m_per_s: 4e3 } } },";
         let restraint = if k < moving { "" } else { rests };
         let x = 1.2 * k as f64;
         // Writing to a String cannot fail.

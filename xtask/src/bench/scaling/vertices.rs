@@ -72,7 +72,11 @@ fn one(context: &Context, report: &mut Report, way: &Way) -> Result<(), Failure>
         .iter()
         .map(|Sample { run: r, .. }| {
             let per_stage = |what: &str| r.info.sum(what) / r.info.sum("/stages");
-            format!("{:.1} and {:.0}", per_stage("/newton_iterations"), per_stage("/linear_iterations"))
+            format!(
+                "{:.1} and {:.0}",
+                per_stage("/newton_iterations"),
+                per_stage("/linear_iterations")
+            )
         })
         .collect();
     let note = format!(

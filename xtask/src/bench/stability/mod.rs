@@ -15,17 +15,28 @@ use super::report::{Figure, Report};
 use super::table::{Cell, Table, Tone};
 use super::{Benchmark, Context};
 use crate::command::{Failure, say};
-use serde_json::Value;
 use scenes::Scene;
+use serde_json::Value;
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
 use stresses::Stress;
 use verdict::{Findings, Verdict};
 
+/// The names of its figures.
+const FIGURES: &[&str] = &[
+    "stability.cells",
+    "stability.stable",
+    "stability.refused",
+    "stability.unstable",
+    "stability.verdicts.*",
+    "stability.refused_cells",
+];
+
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "stability",
     summary: "stiff and extreme cases: what stays stable, what is refused, and why",
+    figures: FIGURES,
     run,
 };
 
@@ -153,7 +164,8 @@ mod tests {
         let values = ["cells", "stable", "refused", "unstable"]
             .map(|name| report.value(&format!("stability.{name}")));
         assert_eq!(values, [3.0, 1.0, 1.0, 1.0].map(Some));
-        let listed = report.tables().find(|(name, _)| *name == "stability.refused_cells").unwrap().1;
+        let listed =
+            report.tables().find(|(name, _)| *name == "stability.refused_cells").unwrap().1;
         assert_eq!(listed.rows, [refused]);
     }
 }
