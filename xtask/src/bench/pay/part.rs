@@ -109,6 +109,7 @@ impl Part {
 /// A sheet that swings on two corners, in view of a camera that stands still.
 fn sheet() -> Value {
     json!({
+        "frames": 1,
         "substeps": 4,
         "newton": { "max_iterations": 4, "tolerance": 1e-3 },
         "cloths": [{ "mesh": { "grid": { "size_m": [1, 1], "cells": [40, 40] } },

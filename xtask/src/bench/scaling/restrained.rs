@@ -95,7 +95,7 @@ fn scene(moving: usize, resting: usize) -> String {
         );
     }
     format!(
-        "{{ substeps: 4, integrator: 'implicit-euler', restraint: {{ thresholds: 'none' }},
+        "{{ frames: 1, substeps: 4, integrator: 'implicit-euler', restraint: {{ thresholds: 'none' }},
            cloths: [{cloths}], handles: [{handles}],
            camera: {{ position: [2.6, -2.2, 0.6], target: [0.5, 0.7, -0.35],
              resolution: [128, 72] }} }}"

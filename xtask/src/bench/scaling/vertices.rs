@@ -57,7 +57,7 @@ fn one(context: &Context, report: &mut Report, way: &Way) -> Result<(), Failure>
             break;
         }
         let text = format!(
-            "{{ {keys}, cloths: [{{ fabric: 'woven-light',
+            "{{ frames: 1, {keys}, cloths: [{{ fabric: 'woven-light',
                  mesh: {{ grid: {{ size_m: [1, 1], cells: [{cells}, {cells}] }} }} }}],
                handles: [{{ select: {{ corners: ['upper-left', 'upper-right'] }} }}],
                camera: {{ position: [2.6, -2.2, 0.6], target: [0.5, 0.7, -0.35],
