@@ -21,8 +21,11 @@ pub(super) struct Ended {
     pub(super) peak_mb: Option<f64>,
 }
 
-/// Runs a command to its end, or until it has taken as long as a limit. No other child may end
-/// meanwhile.
+/// How often the limit of CPU time a child may take on the clock, if it only waits.
+const WAITING: u32 = 10;
+
+/// Runs a command to its end, or until it has taken as much CPU time as a limit, which does not depend
+/// on what else the machine does. No other child may end meanwhile.
 ///
 /// # Errors
 /// If it cannot be started.
@@ -31,7 +34,7 @@ pub(super) fn run(command: &mut Command, limit: Option<Duration>) -> Result<Ende
     let told = |error| Failure::Unable(format!("cannot start {program}: {error}"));
     let before = cpu_time::of_children()?;
     let mut child = command.spawn().map_err(told)?;
-    let status = format!("/proc/{}/status", child.id());
+    let [status, stat] = ["status", "stat"].map(|file| format!("/proc/{}/{file}", child.id()));
     let clock = Instant::now();
     let cannot_wait = |error| Failure::Unable(format!("cannot wait: {error}"));
     let mut peak_mb = None;
@@ -42,7 +45,14 @@ pub(super) fn run(command: &mut Command, limit: Option<Duration>) -> Result<Ende
         if let Some(ended) = child.try_wait().map_err(cannot_wait)? {
             break Some(ended);
         }
-        if limit.is_some_and(|limit| clock.elapsed() > limit) {
+        let is_over = |limit: Duration| {
+            let elapsed = clock.elapsed();
+            let worked =
+                || fs::read_to_string(&stat).ok().and_then(|text| cpu_time::of_stat(&text));
+            // Nothing can have worked for longer than it has been there.
+            elapsed > limit && (elapsed > WAITING * limit || worked().is_none_or(|cpu| cpu > limit))
+        };
+        if limit.is_some_and(is_over) {
             child.kill().and_then(|()| child.wait()).map_err(cannot_wait)?;
             break None;
         }
@@ -72,7 +82,11 @@ mod tests {
     #[test]
     fn a_child_without_end_is_ended() {
         let limit = Some(Duration::from_millis(50));
-        let ended = run(Command::new("sleep").arg("1000"), limit).unwrap();
-        assert!(ended.status.is_none());
+        for (program, arguments) in
+            [("sleep", ["1000", "1000"]), ("sh", ["-c", "while :; do :; done"])]
+        {
+            let ended = run(Command::new(program).args(arguments), limit).unwrap();
+            assert!(ended.status.is_none(), "{program}");
+        }
     }
 }

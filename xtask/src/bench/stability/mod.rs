@@ -40,7 +40,7 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
     run,
 };
 
-/// How long a cell may take.
+/// CPU time that a cell may take.
 const LIMIT: Duration = Duration::from_secs(300);
 
 fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
