@@ -49,7 +49,7 @@ pub(super) const PARTS: &[Part] = &[
         at: "/cloths/0/remeshing",
         off: || Value::Null,
         // The longest edges of the mesh are allowed, and nothing asks for shorter ones.
-        idle: || json!({ "size_m": { "min": 0.019, "max": 0.036 } }),
+        idle: || json!({ "size_m": { "min": 0.03, "max": 0.06 } }),
         skipped: Some("sizing, remeshing: "),
     },
     Part {
@@ -112,7 +112,7 @@ fn sheet() -> Value {
         "frames": 1,
         "substeps": 4,
         "newton": { "max_iterations": 4, "tolerance": 1e-3 },
-        "cloths": [{ "mesh": { "grid": { "size_m": [1, 1], "cells": [40, 40] } },
+        "cloths": [{ "mesh": { "grid": { "size_m": [1, 1], "cells": [24, 24] } },
                      "fabric": "woven-light" }],
         "handles": [{ "select": { "corners": ["upper-left", "upper-right"] } }],
         "camera": { "position": [2.6, -2.2, 0.6], "target": [0.5, 0.7, -0.35],

@@ -89,9 +89,9 @@ fn scene(moving: usize, resting: usize) -> String {
                mesh: {{ grid: {{ size_m: [1, 1], cells: [{CELLS}, {CELLS}] }} }},
                transform: {{ translate: [{x}, 0, 0] }} }},\n"
         );
-        let _ = write!(
+        let _ = writeln!(
             handles,
-            "{{ cloth: 's{k}', select: {{ corners: ['upper-left', 'upper-right'] }} }},\n"
+            "{{ cloth: 's{k}', select: {{ corners: ['upper-left', 'upper-right'] }} }},"
         );
     }
     format!(
