@@ -57,7 +57,8 @@ pub(super) const PARTS: &[Part] = &[
         scene: adaptive,
         at: "/view",
         off: || Value::Null,
-        idle: || json!({}),
+        // Nothing may be coarser than without a view.
+        idle: || json!({ "v_back": 1, "v_hidden": 1, "v_out": 1, "size_min_px": 1e-3 }),
         skipped: Some("view: "),
     },
     Part {
