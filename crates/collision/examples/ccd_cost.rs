@@ -2,23 +2,21 @@
 //!
 //! `cargo run --release -p collision --example ccd_cost`
 
+#[path = "../tests/ccd/splitmix.rs"]
+mod splitmix;
+
 use collision::ccd::{self, Ccd};
 use mesh_core::World3;
+use splitmix::Random;
 use std::time::Instant;
 
 type Test = fn(&[World3; 4], &[World3; 4], f64) -> Ccd;
 type Motion = ([World3; 4], [World3; 4]);
 
-/// SplitMix64, in [−1, 1).
-struct Random(u64);
-
 impl Random {
+    /// In [−1, 1).
     fn number(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        (self.next() >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 
     fn point(&mut self) -> World3 {

@@ -9,9 +9,20 @@ use super::{Benchmark, Context};
 use crate::command::{Failure, say};
 use std::process::{Command, Stdio};
 
+/// The names of its figures.
+const FIGURES: &[&str] = &[
+    "arps.hanging.speedup.*",
+    "arps.hanging.rest_error_m",
+    "arps.solves_per_step",
+    "arps.idle_overhead",
+    "arps.poke.energy_gain",
+    "arps.paper_scheme.blowups",
+];
+
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "arps",
     summary: "restraint: speed-up and error of cloth that comes to rest, overhead, energy, the paper's scheme",
+    figures: FIGURES,
     run,
 };
 

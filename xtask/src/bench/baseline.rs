@@ -139,7 +139,7 @@ fn change(Pair { name, before, now }: &Pair) -> Option<Change> {
     let widening = match (&*now.unit, now.of) {
         ("s", _) | (_, Of::Runs) if before.n.min(now.n) < 3 => SINGLE,
         ("s", _) | (_, Of::Runs) => REPEATED,
-        ("MB", _) => MEMORY,
+        ("MB" | "B", _) => MEMORY,
         _ => SAME,
     };
     let bounds = |f: &Figure| {
@@ -169,6 +169,7 @@ fn change(Pair { name, before, now }: &Pair) -> Option<Change> {
 fn less_is_better(name: &str, unit: &str) -> bool {
     let words = [
         "error",
+        "exponent",
         "ratio",
         "overhead",
         "intersections",
@@ -176,7 +177,7 @@ fn less_is_better(name: &str, unit: &str) -> bool {
         "unstable",
         "difference",
     ];
-    matches!(unit, "s" | "MB") || words.iter().any(|word| name.contains(word))
+    matches!(unit, "s" | "MB" | "B") || words.iter().any(|word| name.contains(word))
 }
 
 #[cfg(test)]

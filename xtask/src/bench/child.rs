@@ -1,6 +1,6 @@
 //! A child process, run to its end: CPU seconds and peak memory.
 
-use super::cpu_time;
+use super::{cpu_time, machine};
 use crate::command::Failure;
 use std::fs;
 use std::process::{Command, ExitStatus};
@@ -21,8 +21,11 @@ pub(super) struct Ended {
     pub(super) peak_mb: Option<f64>,
 }
 
-/// Runs a command to its end, or until it has taken as long as a limit. No other child may end
-/// meanwhile.
+/// How often the limit of CPU time a child may take on the clock, if it only waits.
+const WAITING: u32 = 10;
+
+/// Runs a command to its end, or until it has taken as much CPU time as a limit, which does not depend
+/// on what else the machine does. No other child may end meanwhile.
 ///
 /// # Errors
 /// If it cannot be started.
@@ -31,16 +34,25 @@ pub(super) fn run(command: &mut Command, limit: Option<Duration>) -> Result<Ende
     let told = |error| Failure::Unable(format!("cannot start {program}: {error}"));
     let before = cpu_time::of_children()?;
     let mut child = command.spawn().map_err(told)?;
-    let status = format!("/proc/{}/status", child.id());
+    let [status, stat] = ["status", "stat"].map(|file| format!("/proc/{}/{file}", child.id()));
     let clock = Instant::now();
     let cannot_wait = |error| Failure::Unable(format!("cannot wait: {error}"));
     let mut peak_mb = None;
     let ended = loop {
-        peak_mb = fs::read_to_string(&status).ok().and_then(|text| peak(&text)).or(peak_mb);
+        // proc_pid_status(5); a process that has ended has no such line.
+        let text = fs::read_to_string(&status).ok();
+        peak_mb = text.and_then(|text| machine::megabytes(&text, "VmHWM:")).or(peak_mb);
         if let Some(ended) = child.try_wait().map_err(cannot_wait)? {
             break Some(ended);
         }
-        if limit.is_some_and(|limit| clock.elapsed() > limit) {
+        let is_over = |limit: Duration| {
+            let elapsed = clock.elapsed();
+            let worked =
+                || fs::read_to_string(&stat).ok().and_then(|text| cpu_time::of_stat(&text));
+            // Nothing can have worked for longer than it has been there.
+            elapsed > limit && (elapsed > WAITING * limit || worked().is_none_or(|cpu| cpu > limit))
+        };
+        if limit.is_some_and(is_over) {
             child.kill().and_then(|()| child.wait()).map_err(cannot_wait)?;
             break None;
         }
@@ -49,23 +61,9 @@ pub(super) fn run(command: &mut Command, limit: Option<Duration>) -> Result<Ende
     Ok(Ended { status: ended, cpu_s: cpu_time::of_children()? - before, peak_mb })
 }
 
-/// `VmHWM` of proc_pid_status(5), which is in KiB (MB). A process that has ended has none.
-fn peak(status: &str) -> Option<f64> {
-    let rest = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kib: f64 = rest.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kib * 1024.0 / 1e6)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_peak_is_one_of_many_lines() {
-        let status = "Name:\tx\nVmPeak:\t  9 kB\nVmHWM:\t  250000 kB\nVmRSS:\t 1 kB\n";
-        assert_eq!(peak(status), Some(256.0));
-        assert_eq!(peak("Name:\tx\nState:\tZ (zombie)\n"), None);
-    }
 
     #[cfg(target_os = "linux")]
     #[test]
@@ -84,7 +82,11 @@ mod tests {
     #[test]
     fn a_child_without_end_is_ended() {
         let limit = Some(Duration::from_millis(50));
-        let ended = run(Command::new("sleep").arg("1000"), limit).unwrap();
-        assert!(ended.status.is_none());
+        for (program, arguments) in
+            [("sleep", ["1000", "1000"]), ("sh", ["-c", "while :; do :; done"])]
+        {
+            let ended = run(Command::new(program).args(arguments), limit).unwrap();
+            assert!(ended.status.is_none(), "{program}");
+        }
     }
 }

@@ -7,11 +7,31 @@ use super::report::Report;
 use super::statistics::{median, power_law};
 use super::{Benchmark, Context, arcsim, told_by_tests};
 use crate::command::{Failure, say};
-use std::fs;
+
+/// The names of its figures.
+const FIGURES: &[&str] = &[
+    "contact.*.intersections",
+    "contact.*.cpu_s_per_frame",
+    "contact.*.peak_mb",
+    "contact.*.share",
+    "contact.scaling",
+    "contact.scaling.exponent",
+    "contact.scaling.*.s_per_step",
+    "contact.distant_obstacle.overhead",
+    "contact.ccd.false_negatives",
+    "contact.tangles.resolved",
+    "contact.sphere.arcsim_*_cpu_s",
+    "contact.sphere.arcsim_*_cpu_ratio",
+    "contact.sphere.arcsim_*_peak_mb",
+    "contact.sphere.arcsim_*_faces.*",
+    "contact.sphere.arcsim_*_stretch.*",
+    "contact.sphere.arcsim_*_intersections",
+];
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "contact",
     summary: "crossings and cost of the scenes with contact, growth with the mesh, ARCSim's sphere",
+    figures: FIGURES,
     run,
 };
 
@@ -73,9 +93,7 @@ fn distant_obstacle(context: &Context, report: &mut Report) -> Result<(), Failur
                  mesh: {{ grid: {{ size_m: [1, 1], cells: [60, 60] }} }},
                  transform: {{ translate: [-0.5, -0.5, 0.21] }} }}], obstacles: [{obstacles}] }}"
         );
-        let scene = context.runs().join(format!("contact_{name}.json5"));
-        let told = |error| Failure::Unable(format!("cannot write {}: {error}", scene.display()));
-        fs::create_dir_all(context.runs()).and_then(|()| fs::write(&scene, text)).map_err(told)?;
+        let scene = context.scene(&format!("contact_{name}"), &text)?;
         let out = scene.with_extension("mcap");
         simulations.push(Simulation { scene, frames, sets: Vec::new(), out });
     }
@@ -103,13 +121,11 @@ fn growth(context: &Context, report: &mut Report) -> Result<(), Failure> {
                  fabric: 'woven-light', transform: {{ translate: [-0.5, -0.5, 0.2005] }} }}],
                obstacles: [{{ mesh: {{ sphere: {{ radius_m: 0.2 }} }} }}] }}"
         );
-        let scene = context.runs().join(format!("contact_growth_{cells}.json5"));
-        let told = |error| Failure::Unable(format!("cannot write {}: {error}", scene.display()));
-        fs::create_dir_all(context.runs()).and_then(|()| fs::write(&scene, text)).map_err(told)?;
+        let scene = context.scene(&format!("contact_growth_{cells}"), &text)?;
         let out = scene.with_extension("mcap");
         let triangles = (2 * cells * cells) as f64;
         say(format!("a sheet of {triangles} triangles on a sphere"));
-        let simulation = Simulation { scene: scene.clone(), frames: 2, sets: Vec::new(), out };
+        let simulation = Simulation { scene, frames: 2, sets: Vec::new(), out };
         let info = context.program.simulate(&simulation)?.info;
         let seconds = info.sum("/seconds/contact") / info.sum("/substeps");
         say(format!("  {seconds:.4} s of contact a step"));

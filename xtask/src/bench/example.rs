@@ -41,7 +41,7 @@ impl Example {
 }
 
 impl Told {
-    fn parse(text: &str) -> Result<Told, Failure> {
+    pub(super) fn parse(text: &str) -> Result<Told, Failure> {
         let figures = text.lines().filter_map(|line| line.strip_prefix("figure "));
         let read = figures.map(|line| {
             let mut words = line.split_whitespace();

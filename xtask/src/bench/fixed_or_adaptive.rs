@@ -3,7 +3,7 @@
 
 use super::Context;
 use super::figure::Figure;
-use super::program::{Measured, Simulation};
+use super::program::{Measured, Simulation, fixed_grid};
 use super::report::Report;
 use super::stages;
 use super::surface::{Surface, lattice};
@@ -91,9 +91,9 @@ pub(super) fn run(
     // A frame of which no step failed has as many as the scene says.
     let substeps = info.min("/substeps").map_or(1, |n| n.max(1.0) as usize);
 
-    let mut fixed = variant("fixed", frames, fixed_mesh(cells));
+    let mut fixed = variant("fixed", frames, fixed_grid(cells));
     fixed.run()?;
-    let mut reference_sets = fixed_mesh(cells.map(|n| FINER * n));
+    let mut reference_sets = fixed_grid(cells.map(|n| FINER * n));
     reference_sets.push(format!("substeps={}", FINER * substeps));
     let mut reference = variant("reference", last, reference_sets);
     // Taking turns, so that a change of load on the machine meets both alike.
@@ -138,10 +138,6 @@ fn cells([low, high]: [[f64; 2]; 2], faces: f64) -> [usize; 2] {
     // Two faces a cell.
     let per_m = (0.5 * faces / (width * height)).sqrt();
     [width, height].map(|side| (side * per_m).round().max(1.0) as usize)
-}
-
-fn fixed_mesh([nx, ny]: [usize; 2]) -> Vec<String> {
-    vec!["cloths[0].remeshing=null".into(), format!("cloths[0].mesh.grid.cells=[{nx}, {ny}]")]
 }
 
 /// CPU seconds, and wall seconds by stage.

@@ -4,9 +4,25 @@ use super::report::Report;
 use super::{Benchmark, Context, arcsim, fixed_or_adaptive};
 use crate::command::Failure;
 
+/// The names of its figures.
+const FIGURES: &[&str] = &[
+    "flag.cpu_s_per_frame.*",
+    "flag.peak_mb.*",
+    "flag.stage_s.*.*",
+    "flag.faces.*",
+    "flag.error.*",
+    "flag.arcsim_*_cpu_s",
+    "flag.arcsim_*_cpu_ratio",
+    "flag.arcsim_*_peak_mb",
+    "flag.arcsim_*_faces.*",
+    "flag.arcsim_*_stretch.*",
+    "flag.arcsim_*_intersections",
+];
+
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "flag",
     summary: "cloth on a fixed and on an adaptive mesh, against a finer reference and ARCSim",
+    figures: FIGURES,
     run,
 };
 

@@ -57,6 +57,19 @@ impl Machine {
     }
 }
 
+/// Memory that new programs may have without swapping (MB), `MemAvailable` of proc_meminfo(5); `None`
+/// where the machine does not tell.
+pub(super) fn available_mb() -> Option<f64> {
+    megabytes(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
+}
+
+/// What stands behind a key in one of Linux' files on memory, which count in KiB (MB = 10⁶ bytes).
+pub(super) fn megabytes(text: &str, key: &str) -> Option<f64> {
+    let rest = text.lines().find_map(|line| line.strip_prefix(key))?;
+    let kib: f64 = rest.trim().strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kib * 1024.0 / 1e6)
+}
+
 fn cpu_model(cpuinfo: &str) -> Option<String> {
     let line = cpuinfo.lines().find(|line| line.starts_with("model name"))?;
     Some(line.split_once(':')?.1.trim().to_owned())
@@ -81,5 +94,12 @@ mod tests {
             "processor\t: 0\nmodel\t\t: 1\nmodel name\t: A: fast one \nmodel name\t: other\n";
         assert_eq!(cpu_model(text).as_deref(), Some("A: fast one"));
         assert_eq!(cpu_model("processor : 0"), None);
+    }
+
+    #[test]
+    fn memory_is_one_of_many_lines() {
+        let text = "Name:\tx\nVmPeak:\t  9 kB\nVmHWM:\t  250000 kB\nVmRSS:\t 1 kB\n";
+        assert_eq!(megabytes(text, "VmHWM:"), Some(256.0));
+        assert_eq!(megabytes("Name:\tx\nState:\tZ (zombie)\n", "VmHWM:"), None);
     }
 }

@@ -17,16 +17,19 @@ mod flag;
 mod html;
 mod kernels;
 mod machine;
+mod names;
 mod number;
 mod options;
 mod pareto;
 mod pay;
+mod peers;
 mod points;
 mod program;
 mod provenance;
 mod report;
 mod resume;
 mod run_info;
+mod scaling;
 mod sph;
 mod stability;
 mod stages;
@@ -55,10 +58,12 @@ pub const COMMAND: Command = Command {
 
 /// One benchmark.
 struct Benchmark {
-    /// What is typed after `cargo xtask bench`; its figures begin with it.
+    /// What is typed after `cargo xtask bench`.
     name: &'static str,
     /// One line for the help.
     summary: &'static str,
+    /// Names of its figures and tables, where `*` stands for anything without a dot.
+    figures: &'static [&'static str],
     run: fn(&Context, &mut Report) -> Result<(), Failure>,
 }
 
@@ -72,6 +77,8 @@ const BENCHMARKS: &[Benchmark] = &[
     pareto::BENCHMARK,
     stability::BENCHMARK,
     stiff::BENCHMARK,
+    scaling::BENCHMARK,
+    peers::BENCHMARK,
     pay::BENCHMARK,
 ];
 
@@ -91,6 +98,34 @@ impl Context {
     /// Where a benchmark leaves its recordings.
     fn runs(&self) -> PathBuf {
         self.out.join("runs")
+    }
+
+    /// Writes a scene that a suite has made among the recordings.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    fn scene(&self, name: &str, text: &str) -> Result<PathBuf, Failure> {
+        let path = self.runs().join(format!("{name}.json5"));
+        let told = |error| Failure::Unable(format!("cannot write {}: {error}", path.display()));
+        fs::create_dir_all(self.runs()).and_then(|()| fs::write(&path, text)).map_err(told)?;
+        Ok(path)
+    }
+
+    /// The scenes of a suite that are asked for, all unless one is named.
+    fn chosen<'a, T>(
+        &self,
+        report: &mut Report,
+        all: &'a [T],
+        name: impl Fn(&T) -> &str,
+    ) -> Vec<&'a T> {
+        let Some(path) = &self.options.scene else { return all.iter().collect() };
+        let wanted = path.file_stem().unwrap_or_default().to_string_lossy();
+        let chosen: Vec<&T> = all.iter().filter(|scene| name(scene) == wanted).collect();
+        if chosen.is_empty() {
+            let known: Vec<&str> = all.iter().map(name).collect();
+            report.remark(&format!("`{wanted}` is none of the scenes: {}.", known.join(", ")));
+        }
+        chosen
     }
 
     /// Writes what was found so far, so that a long benchmark that is stopped leaves something.
@@ -176,6 +211,10 @@ fn run(root: &Path, arguments: &[String]) -> Result<(), Failure> {
     for benchmark in chosen {
         let measure = |report: &mut Report| (benchmark.run)(&context, report);
         context.part(&mut report, benchmark.name, measure)?;
+        // Figures of another scene bear its name.
+        if context.options.scene.is_none() {
+            names::check(&mut report, benchmark);
+        }
     }
     let around = report.begin(KERNELS);
     kernels::take(&mut report, root);

@@ -29,6 +29,11 @@ pub(super) struct Simulation {
     pub(super) out: PathBuf,
 }
 
+/// Values that give the first cloth of a scene a grid of cells that stays as it is.
+pub(super) fn fixed_grid([nx, ny]: [usize; 2]) -> Vec<String> {
+    vec!["cloths[0].remeshing=null".into(), format!("cloths[0].mesh.grid.cells=[{nx}, {ny}]")]
+}
+
 /// What a run took and told.
 #[derive(Clone, Debug)]
 pub(super) struct Measured {
@@ -64,9 +69,21 @@ impl Program {
     /// # Errors
     /// If the run fails, or says something that is not understood.
     pub(super) fn simulate(&self, simulation: &Simulation) -> Result<Measured, Failure> {
+        self.simulate_on(simulation, 1)
+    }
+
+    /// Runs a simulation on so many threads.
+    ///
+    /// # Errors
+    /// As [`Program::simulate`].
+    pub(super) fn simulate_on(
+        &self,
+        simulation: &Simulation,
+        threads: usize,
+    ) -> Result<Measured, Failure> {
         // Standard error is the user's: progress, warnings, what failed.
         let child::Ended { status, cpu_s, peak_mb } =
-            child::run(&mut self.command(simulation), None)?;
+            child::run(&mut self.command(simulation, threads), None)?;
         if !status.is_some_and(|status| status.success()) {
             let (scene, status) = (simulation.scene.display(), status.unwrap_or_default());
             return Err(Failure::Unable(format!("the simulation of {scene} failed ({status})")));
@@ -86,7 +103,7 @@ impl Program {
         let log = simulation.out.with_extension("log");
         let told = unable(log.display());
         let file = File::create(&log).map_err(&told)?;
-        let mut command = self.command(simulation);
+        let mut command = self.command(simulation, 1);
         let child::Ended { status, cpu_s, peak_mb } =
             child::run(command.arg("--quiet").stderr(file), Some(limit))?;
         let Some(status) = status else { return Ok(Attempt::TooLong) };
@@ -101,12 +118,12 @@ impl Program {
         }
     }
 
-    fn command(&self, simulation: &Simulation) -> Command {
+    fn command(&self, simulation: &Simulation, threads: usize) -> Command {
         let Simulation { scene, frames, sets, out } = simulation;
         let mut command = Command::new(&self.path);
         command.arg("simulate").arg(scene).arg("--out").arg(out);
-        command.args(["--overwrite", "--allow-unsupported", "--threads", "1"]);
-        command.args(["--frames", &frames.to_string()]);
+        command.args(["--overwrite", "--allow-unsupported"]);
+        command.args(["--threads", &threads.to_string(), "--frames", &frames.to_string()]);
         sets.iter().for_each(|set| {
             command.args(["--set", set]);
         });

@@ -130,6 +130,14 @@ impl Report {
         })
     }
 
+    /// The tables by name.
+    pub(super) fn tables(&self) -> impl Iterator<Item = (&str, &Table)> {
+        self.entries.iter().filter_map(|entry| match &entry.content {
+            Content::Table(table) => Some((entry.name.as_str(), table)),
+            _ => None,
+        })
+    }
+
     /// The report as a JSON document, as `docs/report.md` describes it.
     pub(super) fn json(&self) -> String {
         let (mut figures, mut tables) = (Map::new(), Map::new());

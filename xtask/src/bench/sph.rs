@@ -5,9 +5,26 @@ use super::report::{Figure, Report};
 use super::{Benchmark, Context, statistics};
 use crate::command::{Failure, say};
 
+/// The names of its figures.
+const FIGURES: &[&str] = &[
+    "sph.throughput",
+    "sph.throughput.*",
+    "sph.throughput.*.share.*",
+    "sph.throughput.*.two_threads",
+    "sph.scaling.exponent",
+    "sph.*.curve.*.speedup",
+    "sph.*.curve.*.error_over_floor",
+    "sph.*.speedup.*",
+    "sph.*.error",
+    "sph.*.error.*",
+    "sph.*.chaos_floor",
+    "sph.*.chaos_floor.*",
+];
+
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "sph",
     summary: "throughput of fluid, speed-up by restraint and its error, growth with the particles",
+    figures: FIGURES,
     run,
 };
 

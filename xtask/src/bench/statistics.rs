@@ -15,6 +15,27 @@ pub(super) fn spread(values: &[f64]) -> Option<[f64; 2]> {
     Some([low, high])
 }
 
+/// A confidence interval of the median of what the values are drawn from, whatever its distribution:
+/// from a value to its counterpart from above, such that all values being on one side of the median so
+/// often has a probability of at most 1 − `level` (binomial, as in the sign test). `None` for too few
+/// values.
+pub(super) fn median_interval(values: &[f64], level: f64) -> Option<[f64; 2]> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let n = sorted.len();
+    // Probability that at most k of n values are below the median.
+    let (mut below, mut term) = (0.0, 0.5f64.powi(n as i32));
+    let mut outside = 0;
+    for k in 0..n / 2 {
+        below += term;
+        term *= (n - k) as f64 / (k + 1) as f64;
+        if 2.0 * below <= 1.0 - level {
+            outside = k + 1;
+        }
+    }
+    (outside > 0).then(|| [sorted[outside - 1], sorted[n - outside]])
+}
+
 /// The mean. `None` for no values.
 pub(super) fn mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
@@ -92,6 +113,17 @@ mod tests {
             (median(&even), spread(&even), mean(&even)),
             (Some(3.0), Some([1.0, 9.0]), Some(4.0))
         );
+    }
+
+    #[test]
+    fn intervals_of_the_median_are_those_of_the_sign_test() {
+        let numbers: Vec<f64> = (1..=15).map(f64::from).collect();
+        // P(B(15, ½) ≤ 3) = 0.0176 and P(B(15, ½) ≤ 2) = 0.0037 (tables of the sign test).
+        assert_eq!(median_interval(&numbers, 0.95), Some([4.0, 12.0]));
+        assert_eq!(median_interval(&numbers, 0.99), Some([3.0, 13.0]));
+        assert_eq!(median_interval(&numbers[..8], 0.99), Some([1.0, 8.0]));
+        assert_eq!(median_interval(&numbers[..7], 0.99), None);
+        assert_eq!(median_interval(&[], 0.5), None);
     }
 
     #[test]

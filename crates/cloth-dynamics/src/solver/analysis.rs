@@ -61,6 +61,15 @@ impl Analysis {
         self.symbolic.len_val()
     }
 
+    /// For each permuted block column: where the three scalar columns of its diagonal block begin
+    /// among the permuted scalars.
+    pub(super) fn diagonal_columns(&self) -> impl Iterator<Item = [usize; 3]> {
+        self.block_starts.windows(2).map(|starts| {
+            let (begin, n) = (9 * starts[0] as usize, 3 * (starts[1] - starts[0]) as usize);
+            [begin, begin + n, begin + 2 * n]
+        })
+    }
+
     /// Writes the scalars of a matrix of this pattern in permuted order, each through `convert`.
     pub(super) fn permute<T>(
         &self,

@@ -19,7 +19,7 @@ const REFINE_SINGLE: usize = 8;
 /// A factor in single precision is good if its own solution needs at most this many: a poor one is
 /// slow as a stale factor, too.
 const GOOD_SINGLE: usize = 3;
-/// After a poor one, so many factors are in double precision.
+/// After a poor one, or one that took long, so many factors are in double precision.
 const BARRED: usize = 32;
 /// The same in double precision, where more than one or two means a matrix at the edge of singular.
 const REFINE_DOUBLE: usize = 20;
@@ -200,7 +200,7 @@ impl KeptFactor {
                 let vectors = &mut self.vectors;
                 match attempt(&mut factor, matrix, rhs, x, tolerance, REFINE_SINGLE, vectors) {
                     Ok(outcome) => {
-                        if outcome.iterations > GOOD_SINGLE {
+                        if outcome.iterations > GOOD_SINGLE || factor.is_slow() {
                             self.singles_barred = BARRED;
                         }
                         self.numbers = Some(Numbers::Single(factor));

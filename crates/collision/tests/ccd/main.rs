@@ -4,6 +4,7 @@
 mod adversarial;
 mod exact;
 mod random;
+mod splitmix;
 
 use collision::ccd::{self, Ccd};
 use collision::distance;

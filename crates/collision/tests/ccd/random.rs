@@ -1,19 +1,9 @@
-//! Random numbers and random collision queries: generic ones, and ones built around a contact.
+//! Random collision queries: generic ones, and ones built around a contact.
 
 use crate::exact::{Point, Query};
-
-/// SplitMix64.
-pub(crate) struct Random(pub(crate) u64);
+pub(crate) use crate::splitmix::Random;
 
 impl Random {
-    pub(crate) fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
     /// One of 0 … n − 1.
     pub(crate) fn below(&mut self, n: u64) -> u64 {
         self.next() % n

@@ -18,9 +18,23 @@ use scene::{Plan, SCENES, Scene};
 use settings::Setting;
 use std::fs;
 
+/// The names of its figures.
+const FIGURES: &[&str] = &[
+    "pareto.*.floor",
+    "pareto.*.reference.cpu_s",
+    "pareto.*.reference.peak_mb",
+    "pareto.*.cpu_ratio.*",
+    "pareto.*.stage_s.*.*",
+    "pareto.*.runs",
+    "pareto.*.fixed",
+    "pareto.*.adaptive",
+    "pareto.*.view",
+];
+
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "pareto",
     summary: "error against CPU time as the knobs sweep, on fixed and adaptive meshes",
+    figures: FIGURES,
     run,
 };
 
@@ -28,20 +42,7 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 const LATTICE: [usize; 2] = [25, 25];
 
 fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
-    let scenes: Vec<&Scene> = match &context.options.scene {
-        None => SCENES.iter().collect(),
-        Some(path) => {
-            let name = path.file_stem().unwrap_or_default().to_string_lossy();
-            let scenes: Vec<&Scene> = SCENES.iter().filter(|scene| scene.name == name).collect();
-            if scenes.is_empty() {
-                let known: Vec<&str> = SCENES.iter().map(|scene| scene.name).collect();
-                let known = known.join(", ");
-                report.remark(&format!("`{name}` is none of the scenes of pareto: {known}."));
-            }
-            scenes
-        }
-    };
-    for scene in scenes {
+    for scene in context.chosen(report, SCENES, |scene| scene.name) {
         let part = format!("pareto/{}", scene.name);
         context.part(report, &part, |report| sweep(context, report, scene))?;
     }

@@ -66,6 +66,22 @@ const fn level(edge_m: f64, substeps: usize) -> Level {
 const SDIRK2: &str = "integrator=sdirk2";
 const EULER: &str = "integrator=implicit-euler";
 
+/// A sheet of a metre that meets a sphere, which many edges make expensive.
+const ON_A_SPHERE: Plan = Plan {
+    frames: 12,
+    levels: &[level(1.0 / 8.0, 4), level(1.0 / 16.0, 8), level(1.0 / 24.0, 12)],
+    reference: level(1.0 / 40.0, 20),
+    other_edge_m: 1.0 / 36.0,
+    n_turned: 2,
+};
+const ON_A_SPHERE_QUICK: Plan = Plan {
+    frames: 6,
+    levels: &[level(0.25, 4), level(0.125, 6), level(1.0 / 12.0, 8)],
+    reference: level(0.05, 12),
+    other_edge_m: 1.0 / 18.0,
+    n_turned: 1,
+};
+
 /// All of them.
 pub(super) const SCENES: &[Scene] = &[
     Scene {
@@ -122,20 +138,8 @@ pub(super) const SCENES: &[Scene] = &[
         coarsest_m: 0.5,
         integrator: EULER,
         note: "It is followed until it bends over the sphere; how its folds then buckle is chaotic.",
-        quick: Plan {
-            frames: 6,
-            levels: &[level(0.25, 4), level(0.125, 6), level(1.0 / 12.0, 8)],
-            reference: level(0.05, 12),
-            other_edge_m: 1.0 / 18.0,
-            n_turned: 1,
-        },
-        full: Plan {
-            frames: 7,
-            levels: &[level(1.0 / 8.0, 4), level(1.0 / 16.0, 8), level(1.0 / 24.0, 12)],
-            reference: level(1.0 / 40.0, 20),
-            other_edge_m: 1.0 / 36.0,
-            n_turned: 2,
-        },
+        quick: ON_A_SPHERE_QUICK,
+        full: Plan { frames: 7, ..ON_A_SPHERE },
     },
     Scene {
         name: "flag",
@@ -166,20 +170,8 @@ pub(super) const SCENES: &[Scene] = &[
         integrator: EULER,
         note: "Cloth struck by a sphere is chaotic: only the first frames are compared, from rest, \
                as no run can start from a state of the reference.",
-        quick: Plan {
-            frames: 6,
-            levels: &[level(0.25, 4), level(0.125, 6), level(1.0 / 12.0, 8)],
-            reference: level(0.05, 12),
-            other_edge_m: 1.0 / 18.0,
-            n_turned: 1,
-        },
-        full: Plan {
-            frames: 12,
-            levels: &[level(1.0 / 8.0, 4), level(1.0 / 16.0, 8), level(1.0 / 24.0, 12)],
-            reference: level(1.0 / 40.0, 20),
-            other_edge_m: 1.0 / 36.0,
-            n_turned: 2,
-        },
+        quick: ON_A_SPHERE_QUICK,
+        full: ON_A_SPHERE,
     },
 ];
 

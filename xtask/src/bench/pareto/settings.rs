@@ -1,5 +1,7 @@
 //! One setting of all knobs, as values of a scene.
 
+use super::super::program::fixed_grid;
+
 /// How fine, in space and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Level {
@@ -40,8 +42,7 @@ impl Setting {
 
 /// Values for a mesh of cells with edges of this length that stays as it is.
 pub(super) fn fixed_mesh(size_m: [f64; 2], edge_m: f64) -> Vec<String> {
-    let [nx, ny] = cells(size_m, edge_m);
-    vec!["cloths[0].remeshing=null".into(), format!("cloths[0].mesh.grid.cells=[{nx}, {ny}]")]
+    fixed_grid(cells(size_m, edge_m))
 }
 
 /// Cells with edges of about this length.

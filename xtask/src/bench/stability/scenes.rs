@@ -74,7 +74,6 @@ fn flag() -> Value {
 /// Writes `stretched.obj`, `inverted.obj` and `crumpled.obj`: the square sheet twice as large as its
 /// pattern, with every fourth vertex thrown across its neighbours, and gathered at random in a ball.
 pub(super) fn write_meshes(folder: &Path) -> io::Result<()> {
-    let mut random = Random(7);
     let stretched = |u: [f64; 2]| [2.0 * u[0], 2.0 * u[1], 0.0];
     std::fs::write(folder.join("stretched.obj"), sheet(stretched))?;
     let cell = SIDE / CELLS as f64;
@@ -84,7 +83,14 @@ pub(super) fn write_meshes(folder: &Path) -> io::Result<()> {
         [u[0] + thrown, u[1] + thrown, 0.0]
     };
     std::fs::write(folder.join("inverted.obj"), sheet(inverted))?;
-    let crumpled = |_| std::array::from_fn(|_| 0.1 * random.number());
+    // Lehmer's generator: enough for places without order.
+    const MODULUS: u64 = (1 << 31) - 1;
+    let mut seed = 7;
+    let mut random = || {
+        seed = 48_271 * seed % MODULUS;
+        2.0 * seed as f64 / MODULUS as f64 - 1.0
+    };
+    let crumpled = |_| std::array::from_fn(|_| 0.1 * random());
     std::fs::write(folder.join("crumpled.obj"), sheet(crumpled))
 }
 
@@ -103,17 +109,4 @@ fn sheet(mut at: impl FnMut([f64; 2]) -> [f64; 3]) -> String {
         let _ = writeln!(text, "f {a}/{a} {b}/{b} {c}/{c}\nf {a}/{a} {c}/{c} {d}/{d}");
     }
     text
-}
-
-/// SplitMix64, in [−1, 1).
-struct Random(u64);
-
-impl Random {
-    fn number(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
 }

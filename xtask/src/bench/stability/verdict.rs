@@ -1,6 +1,7 @@
 //! What a cell of the table comes to.
 
 use super::super::program::Measured;
+use super::super::table::Tone;
 use super::stresses::Stress;
 use std::fmt;
 
@@ -18,8 +19,8 @@ pub(super) struct Findings {
     rise: Option<f64>,
     /// Largest stretch at the end (1).
     stretch: f64,
-    /// Crossings at the end.
-    crossings: f64,
+    /// Crossings at the start and at the end.
+    crossings: [f64; 2],
     iterations: f64,
     seconds: f64,
 }
@@ -54,7 +55,7 @@ impl Findings {
             is_finite,
             rise: (stress.is_closed && is_windless).then_some(rise),
             stretch: last("/stretch/max"),
-            crossings: last("/crossings"),
+            crossings: [info.initial("/crossings").unwrap_or(0.0), last("/crossings")],
             iterations: info.sum("/newton_iterations") / info.sum("/stages"),
             seconds: measured.cpu_s,
         }
@@ -70,7 +71,7 @@ impl Findings {
         if self.rise.is_some_and(|rise| rise > RISE) {
             return complain("energy from nowhere");
         }
-        if self.crossings > 0.0 {
+        if self.crossings[1] > self.crossings[0] {
             return complain("passes through");
         }
         let allowed = plain.map_or(f64::INFINITY, |plain| plain.stretch + MORE_STRETCH);
@@ -81,9 +82,20 @@ impl Findings {
     }
 }
 
+impl Verdict {
+    /// How its cell is to be taken.
+    pub(super) fn tone(&self) -> Tone {
+        match self {
+            Verdict::Stable(_) => Tone::Good,
+            Verdict::Refused(_) => Tone::Plain,
+            Verdict::Unstable(_) => Tone::Bad,
+        }
+    }
+}
+
 impl fmt::Display for Findings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Findings { rise, stretch, crossings, iterations, seconds, .. } = self;
+        let Findings { rise, stretch, crossings: [_, crossings], iterations, seconds, .. } = self;
         if let Some(rise) = rise {
             write!(f, "energy rises by {rise:.1e}, ")?;
         }

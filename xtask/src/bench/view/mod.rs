@@ -13,9 +13,30 @@ use crate::command::Failure;
 use serde_json::Value;
 use std::path::PathBuf;
 
+/// The names of its figures.
+const FIGURES: &[&str] = &[
+    "view.*.faces.*",
+    "view.*.vertices.*",
+    "view.*.s_per_frame.*",
+    "view.*.crossings.*",
+    "view.*.speedup",
+    "view.*.speedup_over_fixed",
+    "view.*.overhead_fraction",
+    "view.overhead_fraction",
+    "view.*.pixel_error",
+    "view.*.chaos_floor",
+    "view.*.pop",
+    "view.*.pop_floor",
+    "view.distance.edge_px",
+    "view.distance.edge_px_spread",
+    "view.crowd.*.cpu_s_per_frame.*",
+    "view.crowd.*.speedup",
+];
+
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "view",
     summary: "mesh sizes by view: speed-up, error in pixels, growth with the scene",
+    figures: FIGURES,
     run,
 };
 
