@@ -29,6 +29,9 @@ const FIGURES: &[&str] = &[
     "view.*.pop_floor",
     "view.distance.edge_px",
     "view.distance.edge_px_spread",
+    "view.coarse_sag.*",
+    "view.option.*.cpu_ratio",
+    "view.option.*.faces_ratio",
     "view.crowd.*.cpu_s_per_frame.*",
     "view.crowd.*.speedup",
 ];
