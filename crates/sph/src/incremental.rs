@@ -81,6 +81,8 @@ pub(crate) struct Update<'a> {
     pub(crate) movers: &'a [u32],
     /// Who has stopped.
     pub(crate) stopped: &'a [u32],
+    /// To whom moving surfaces give another density.
+    pub(crate) by_sheets: &'a [u32],
     /// Changes of pressure that do not count (Pa).
     pub(crate) tolerance: f64,
     /// Acceleration of gravity (m/s²).
@@ -115,6 +117,7 @@ impl Update<'_> {
             marks[i as usize] = MOVED | TURNED | TOUCHED | CHANGED;
         }
         touched.extend_from_slice(self.movers);
+        touch(self.by_sheets, TOUCHED, marks, touched);
         for &i in self.stopped {
             marks[i as usize] = TURNED | CHANGED;
         }
@@ -254,8 +257,8 @@ impl Update<'_> {
         }
         for &i in touched.iter() {
             let k = i as usize;
-            let (p, w, density) =
-                (&mut self.state.x[k], &mut self.state.w[k], self.state.density[k]);
+            let density = self.state.full_density(k);
+            let (p, w) = (&mut self.state.x[k], &mut self.state.w[k]);
             let term = self.laws.pressure_term(density);
             let difference = term * density * density - p[3] * w[3] * w[3];
             let known = marks[k] & CHANGED != 0;

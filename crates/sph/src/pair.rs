@@ -4,6 +4,7 @@ use crate::grid::Point;
 use crate::kernel::CubicSpline;
 use crate::lanes::{Four, LANES, Number};
 use crate::settings::FluidSettings;
+use crate::sheets::surface_density;
 use crate::state_equation::Tait;
 use crate::walls;
 use pulp::Simd;
@@ -17,6 +18,8 @@ pub(crate) struct Laws {
     pub(crate) mass: f64,
     /// Factor of the volumes of wall particles, see [`walls::lattice_sums`].
     pub(crate) wall_factor: f64,
+    /// Mass of fluid that moving surfaces stand for (kg/m²).
+    pub(crate) sheet_density: f64,
     /// 2 α h c_s of Manteaux2013 Eq. (6), between particles and with walls.
     viscous: f64,
     wall_viscous: f64,
@@ -80,6 +83,7 @@ impl Laws {
             tait: Tait::new(settings.rest_density, settings.sound_speed),
             mass: settings.rest_density / everywhere,
             wall_factor: plate / everywhere,
+            sheet_density: surface_density(&kernel, settings.spacing, settings.rest_density),
             viscous: 2.0 * settings.viscosity * h * settings.sound_speed,
             wall_viscous: 2.0 * settings.wall_viscosity * h * settings.sound_speed,
             softening: 0.01 * h * h,

@@ -18,11 +18,19 @@ pub(crate) struct State {
     pub(crate) density: Vec<f64>,
     /// Lasting number.
     pub(crate) id: Vec<u64>,
+    /// What moving surfaces add to the acceleration (m/s²) and to the density (kg/m³); empty if there
+    /// are none.
+    pub(crate) by_sheets: Vec<Point>,
 }
 
 impl State {
     pub(crate) fn len(&self) -> usize {
         self.id.len()
+    }
+
+    /// Density with what surfaces add (kg/m³).
+    pub(crate) fn full_density(&self, i: usize) -> f64 {
+        self.density[i] + self.by_sheets.get(i).map_or(0.0, |by| by[3])
     }
 
     /// Adds a particle that moves freely.
@@ -32,6 +40,9 @@ impl State {
         self.u.push([v.x, v.y, v.z, 0.0]);
         self.a.push([0.0; 4]);
         self.density.push(0.0);
+        if !self.by_sheets.is_empty() {
+            self.by_sheets.push([0.0; 4]);
+        }
         self.id.push(id);
     }
 
@@ -48,6 +59,9 @@ impl State {
         filter(&mut self.a, &kept);
         filter(&mut self.density, &kept);
         filter(&mut self.id, &kept);
+        if !self.by_sheets.is_empty() {
+            filter(&mut self.by_sheets, &kept);
+        }
     }
 
     /// Puts the particles in an order, through `spare`, which holds nothing of use before or after.
@@ -58,6 +72,9 @@ impl State {
         gather(&mut self.a, order, &mut spare.points);
         gather(&mut self.density, order, &mut spare.numbers);
         gather(&mut self.id, order, &mut spare.ids);
+        if !self.by_sheets.is_empty() {
+            gather(&mut self.by_sheets, order, &mut spare.points);
+        }
     }
 }
 

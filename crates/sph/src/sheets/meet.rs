@@ -1,0 +1,117 @@
+//! A fluid among moving surfaces.
+
+use super::Sheets;
+use super::forces::take_away;
+use crate::fluid::{Fluid, hardest};
+use crate::report::{Seconds, StepReport};
+use crate::settings::FluidError;
+use arps::Restraint;
+use nalgebra::Vector3;
+use std::time::Instant;
+
+impl<R: Restraint> Fluid<R> {
+    /// Makes as many steps within the bound as `duration` (s) takes, among surfaces that go the ways
+    /// they were given in that time. They push the fluid, and [`Sheets::impulses`] then says what it
+    /// has done to them. No particle comes to the other side of a surface unless surfaces left it no
+    /// room, which the report tells as `squeezed`.
+    ///
+    /// # Errors
+    /// As for [`Fluid::advance`].
+    pub fn advance_among(
+        &mut self,
+        duration: f64,
+        sheets: &mut Sheets,
+    ) -> Result<StepReport, FluidError> {
+        if !(duration.is_finite() && duration > 0.0) {
+            let wanted = "positive and finite";
+            return Err(FluidError::OutOfRange { name: "duration", value: duration, wanted });
+        }
+        let clock = Instant::now();
+        self.state.by_sheets.resize(self.state.len(), [0.0; 4]);
+        sheets.start(duration, self.laws.sheet_density);
+        sheets.list(&self.laws, &self.state.x, 0.0);
+        // Pressures stay as they are until the step has been made.
+        take_away(&mut self.state.a, &mut self.state.by_sheets);
+        let mut seconds = Seconds::default();
+        self.feel_sheets(sheets, &mut seconds);
+        self.hardest = hardest(&self.state.a);
+        let before = clock.elapsed().as_secs_f64();
+        let mut report = self.make_steps(duration, Some(sheets))?;
+        report.seconds.sheets += before;
+        Ok(report)
+    }
+
+    /// The mass of fluid near every corner of surfaces that stand still (kg): that of each particle
+    /// within the support of a surface, shared out among the corners next to it.
+    pub fn masses_near(&self, sheets: &mut Sheets) -> Vec<f64> {
+        sheets.start(0.0, self.laws.sheet_density);
+        sheets.list(&self.laws, &self.state.x, 0.0);
+        let mut masses = vec![0.0; sheets.impulses().len()];
+        sheets.shares(&self.laws, &self.state.x, |_, corner, share| {
+            masses[corner] += self.laws.mass * share;
+        });
+        masses
+    }
+
+    /// Carries the fluid along with the corners of surfaces of which [`Fluid::masses_near`] was just
+    /// asked, whose velocities have changed by `changes` (m/s): the sum of momenta changes by that of
+    /// the masses times the changes.
+    ///
+    /// # Errors
+    /// If there are not as many changes as corners.
+    pub fn carry(&mut self, sheets: &Sheets, changes: &[Vector3<f64>]) -> Result<(), FluidError> {
+        let (found, expected) = (changes.len(), sheets.impulses().len());
+        if found != expected {
+            return Err(FluidError::Length { what: "changes of velocity", found, expected });
+        }
+        let (state, mut fastest) = (&mut self.state, self.fastest);
+        sheets.shares(&self.laws, &state.x, |particle, corner, share| {
+            let u = &mut state.u[particle];
+            for c in 0..3 {
+                u[c] += share * changes[corner][c];
+            }
+        });
+        for u in &state.u {
+            fastest = Vector3::new(u[0], u[1], u[2]).norm().max(fastest);
+        }
+        self.fastest = fastest;
+        Ok(())
+    }
+
+    /// After particles and surfaces have moved: what surfaces add to densities. What they added to
+    /// accelerations is taken away.
+    pub(crate) fn touch_sheets(
+        &mut self,
+        sheets: &mut Sheets,
+        others: bool,
+        seconds: &mut Seconds,
+    ) {
+        let clock = Instant::now();
+        if others {
+            sheets.forget_particles();
+        }
+        self.state.by_sheets.resize(self.state.len(), [0.0; 4]);
+        take_away(&mut self.state.a, &mut self.state.by_sheets);
+        sheets.list(&self.laws, &self.state.x, 0.0);
+        sheets.densities(&self.laws, &self.state.x, &mut self.state.by_sheets);
+        seconds.sheets += clock.elapsed().as_secs_f64();
+    }
+
+    /// Adds to accelerations what surfaces do.
+    pub(crate) fn feel_sheets(&mut self, sheets: &mut Sheets, seconds: &mut Seconds) {
+        let clock = Instant::now();
+        let state = &mut self.state;
+        sheets.accelerations(&self.laws, &state.x, &state.w, &mut state.a, &mut state.by_sheets);
+        seconds.sheets += clock.elapsed().as_secs_f64();
+    }
+
+    /// Forgets surfaces, if there were any.
+    pub(crate) fn leave_sheets(&mut self) {
+        if !self.state.by_sheets.is_empty() {
+            self.state.by_sheets.clear();
+            self.scratch.changes.forget();
+            self.evaluate_all(&mut Seconds::default());
+            self.hardest = hardest(&self.state.a);
+        }
+    }
+}
