@@ -1,10 +1,29 @@
 //! What surfaces do to a fluid and it to them.
+//!
+//! A particle is touched by the point of all surfaces that is closest to it, as by the border of a half
+//! space of fluid. What lies behind adds ρ₀ A (c − d)² to its density, at a distance d < c in spacings.
+//! Two conditions set A and c: half a spacing off, where the first layer of a lattice lies, it makes up
+//! for the share f of the density that is missing behind, and bears there the pressure that the layer
+//! has, that is, its slope is ρ₀ per spacing: c = 1/2 + 2f, A = 1/4f. The force is the gradient of the
+//! energy, and the surface has it the other way round, at the point that touches.
 
 use super::near::squared_distance;
-use super::{Sample, Sheets};
+use super::{FARTHEST, Sheets, triangle};
 use crate::grid::Point;
-use crate::pair::{Laws, Side};
+use crate::pair::Laws;
 use nalgebra::Vector3;
+
+/// A particle and the point of the surfaces that is closest to it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    pub(super) particle: u32,
+    pub(super) triangle: u32,
+    /// Barycentric coordinates of the point (1).
+    pub(super) weights: [f64; 3],
+    /// From the point to the particle (1), and how far (m).
+    pub(super) normal: Vector3<f64>,
+    pub(super) distance: f64,
+}
 
 impl Sheets {
     /// Lists the samples around particles at `x`, if need be; `ahead` (m) is how far samples and
@@ -30,24 +49,57 @@ impl Sheets {
         }
     }
 
-    /// Densities that the surfaces give to particles at `x` (kg/m³), into the fourth number of `by`;
-    /// whose has changed is noted.
-    pub(crate) fn densities(&mut self, laws: &Laws, x: &[Point], by: &mut [Point]) {
-        self.changed.clear();
-        let mut k = 0;
-        for (i, by) in by.iter_mut().enumerate() {
-            let mut density = 0.0;
-            if self.near.who.get(k).is_some_and(|&who| who as usize == i) {
-                let mut nearest = f64::INFINITY;
-                for &s in self.near.samples(k) {
-                    let place = &self.places[s as usize];
-                    let squared = squared_distance(&x[i], place);
-                    nearest = nearest.min(squared);
-                    density += place[3] * laws.kernel.value(squared);
-                }
-                self.near.nearest[k] = nearest;
-                k += 1;
+    /// Finds what touches whom, for particles at `x`.
+    pub(crate) fn find_touches(&mut self, laws: &Laws, x: &[Point]) {
+        self.touches.clear();
+        let reach = laws.surface.reach;
+        for k in 0..self.near.who.len() {
+            let touch = self.closest(k, x, reach);
+            self.touches.extend(touch.filter(|touch| touch.distance < reach));
+        }
+    }
+
+    /// The point of the surfaces closest to the `k`th particle that they are near, if it may be within
+    /// `reach` (m); notes how far its nearest sample is.
+    fn closest(&mut self, k: usize, x: &[Point], reach: f64) -> Option<Touch> {
+        let particle = self.near.who[k];
+        let p = &x[particle as usize];
+        let squared = |s: &u32| squared_distance(p, &self.places[*s as usize]);
+        let nearest = self.near.samples(k).iter().map(squared).fold(f64::INFINITY, f64::min);
+        self.near.nearest[k] = nearest;
+        // Whatever is closer than a sample belongs to one that is no farther than this.
+        let farthest = nearest.sqrt() + FARTHEST * self.spacing;
+        if nearest.sqrt() > reach + FARTHEST * self.spacing {
+            return None;
+        }
+        let x = Vector3::new(p[0], p[1], p[2]);
+        let (mut found, mut last): (Option<Touch>, u32) = (None, u32::MAX);
+        for s in self.near.samples(k) {
+            let name = self.samples[*s as usize].triangle;
+            if name == last || squared(s) > farthest * farthest {
+                continue;
             }
+            last = name;
+            let corners = self.triangles[name as usize].map(|c| self.x[c as usize]);
+            let weights = triangle::closest(&x, &corners);
+            let off = x - triangle::at(&weights, &corners);
+            let distance = off.norm();
+            if found.is_none_or(|found| distance < found.distance) {
+                let normal = if distance > 0.0 { off / distance } else { Vector3::zeros() };
+                found = Some(Touch { particle, triangle: name, weights, normal, distance });
+            }
+        }
+        found
+    }
+
+    /// Densities that the surfaces give to the particles that they touch (kg/m³), into the fourth
+    /// number of `by`; whose has changed is noted.
+    pub(crate) fn densities(&mut self, laws: &Laws, by: &mut [Point]) {
+        self.changed.clear();
+        let mut touches = self.touches.iter().peekable();
+        for (i, by) in by.iter_mut().enumerate() {
+            let touch = touches.next_if(|touch| touch.particle as usize == i);
+            let density = touch.map_or(0.0, |touch| laws.surface.density(touch.distance));
             if by[3] != density {
                 by[3] = density;
                 self.changed.push(i as u32);
@@ -56,7 +108,7 @@ impl Sheets {
     }
 
     /// Accelerations by the surfaces (m/s²), added to `a` and kept in `by`, which must have none; and
-    /// the forces on the corners, exactly opposite but for rounding.
+    /// the forces on the corners, opposite but for rounding.
     pub(crate) fn accelerations(
         &mut self,
         laws: &Laws,
@@ -65,69 +117,38 @@ impl Sheets {
         a: &mut [Point],
         by: &mut [Point],
     ) {
-        self.on_samples.fill([0.0; 3]);
-        let support_squared = laws.kernel.support() * laws.kernel.support();
-        for (k, &i) in self.near.who.iter().enumerate() {
-            let i = i as usize;
-            let mut sum = [0.0; 3];
-            for &s in self.near.samples(k) {
-                let (place, v) = (&self.places[s as usize], &self.velocities[s as usize]);
-                let squared = squared_distance(&x[i], place);
-                if squared >= support_squared {
-                    continue;
-                }
-                let relative = [w[i][0] - v[0], w[i][1] - v[1], w[i][2] - v[2], w[i][3]];
-                let here = Side::new(&x[i], &relative);
-                let slope = laws.kernel.slope_over_r(squared);
-                let at = [place[0], place[1], place[2]];
-                let by = laws.by_wall(&here, &at, 0.0, place[3], slope);
-                let back = &mut self.on_samples[s as usize];
-                for c in 0..3 {
-                    sum[c] += by[c];
-                    back[c] -= laws.mass * by[c];
-                }
-            }
-            for c in 0..3 {
-                by[i][c] = sum[c];
-                a[i][c] += sum[c];
-            }
-        }
         self.forces.fill(Vector3::zeros());
-        for (sample, force) in self.samples.iter().zip(&self.on_samples) {
-            let corners = self.triangles[sample.triangle as usize];
-            for (corner, weight) in corners.into_iter().zip(sample.weights) {
-                self.forces[corner as usize] += Vector3::from(*force) * weight;
+        for touch in &self.touches {
+            let i = touch.particle as usize;
+            let corners = self.triangles[touch.triangle as usize];
+            let v = triangle::at(&touch.weights, &corners.map(|c| self.velocities[c as usize]));
+            let opening = (Vector3::new(w[i][0], w[i][1], w[i][2]) - v).dot(&touch.normal);
+            let push = touch.normal * laws.by_surface(x[i][3], w[i][3], touch.distance, opening);
+            for c in 0..3 {
+                by[i][c] = push[c];
+                a[i][c] += push[c];
+            }
+            for (corner, weight) in corners.into_iter().zip(touch.weights) {
+                self.forces[corner as usize] -= push * (laws.mass * weight);
             }
         }
     }
 
-    /// Calls `give` with every particle that surfaces touch, every corner that it touches, and the share
-    /// that the corner has in it: for a particle they add up to one.
+    /// Calls `give` with every particle within the support of a surface, the corners of the triangle
+    /// that is closest to it, and the share of each in it: for a particle they add up to one.
     pub(crate) fn shares(
-        &self,
+        &mut self,
         laws: &Laws,
         x: &[Point],
         mut give: impl FnMut(usize, usize, f64),
     ) {
-        for (k, &i) in self.near.who.iter().enumerate() {
-            let i = i as usize;
-            let weight = |s: u32| {
-                let place = &self.places[s as usize];
-                place[3] * laws.kernel.value(squared_distance(&x[i], place))
-            };
-            let all: f64 = self.near.samples(k).iter().map(|&s| weight(s)).sum();
-            if all <= 0.0 {
-                continue;
-            }
-            for &s in self.near.samples(k) {
-                let share = weight(s) / all;
-                if share > 0.0 {
-                    let Sample { triangle, weights, .. } = self.samples[s as usize];
-                    let corners = self.triangles[triangle as usize];
-                    for (corner, weight) in corners.into_iter().zip(weights) {
-                        give(i, corner as usize, share * weight);
-                    }
-                }
+        let reach = laws.kernel.support();
+        for k in 0..self.near.who.len() {
+            let touch = self.closest(k, x, reach);
+            let Some(touch) = touch.filter(|touch| touch.distance < reach) else { continue };
+            let corners = self.triangles[touch.triangle as usize];
+            for (corner, weight) in corners.into_iter().zip(touch.weights) {
+                give(touch.particle as usize, corner as usize, weight);
             }
         }
     }
@@ -147,5 +168,33 @@ pub(crate) fn take_away(a: &mut [Point], by: &mut [Point]) {
             a[c] -= by[c];
             by[c] = 0.0;
         }
+    }
+}
+
+/// What a surface adds to the density of a particle, by its distance.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Surface {
+    /// Distance from which on it adds nothing (m).
+    pub(crate) reach: f64,
+    /// ρ₀ A per squared spacing (kg/m⁵).
+    scale: f64,
+}
+
+impl Surface {
+    /// For a fluid in which the share `missing` (1) of the density comes from the layers behind one.
+    pub(crate) fn new(missing: f64, spacing: f64, rest_density: f64) -> Self {
+        let scale = rest_density / (4.0 * missing * spacing * spacing);
+        Surface { reach: (0.5 + 2.0 * missing) * spacing, scale }
+    }
+
+    /// At a distance (m) within its reach (kg/m³).
+    pub(crate) fn density(&self, distance: f64) -> f64 {
+        let depth = self.reach - distance;
+        self.scale * depth * depth
+    }
+
+    /// How much less that is farther off (kg/m⁴).
+    pub(crate) fn slope(&self, distance: f64) -> f64 {
+        2.0 * self.scale * (self.reach - distance)
     }
 }

@@ -28,8 +28,9 @@ impl<R: Restraint> Fluid<R> {
         }
         let clock = Instant::now();
         self.state.by_sheets.resize(self.state.len(), [0.0; 4]);
-        sheets.start(duration, self.laws.sheet_density);
+        sheets.start(duration);
         sheets.list(&self.laws, &self.state.x, 0.0);
+        sheets.find_touches(&self.laws, &self.state.x);
         // Pressures stay as they are until the step has been made.
         take_away(&mut self.state.a, &mut self.state.by_sheets);
         let mut seconds = Seconds::default();
@@ -44,7 +45,7 @@ impl<R: Restraint> Fluid<R> {
     /// The mass of fluid near every corner of surfaces that stand still (kg): that of each particle
     /// within the support of a surface, shared out among the corners next to it.
     pub fn masses_near(&self, sheets: &mut Sheets) -> Vec<f64> {
-        sheets.start(0.0, self.laws.sheet_density);
+        sheets.start(0.0);
         sheets.list(&self.laws, &self.state.x, 0.0);
         let mut masses = vec![0.0; sheets.impulses().len()];
         sheets.shares(&self.laws, &self.state.x, |_, corner, share| {
@@ -59,7 +60,7 @@ impl<R: Restraint> Fluid<R> {
     ///
     /// # Errors
     /// If there are not as many changes as corners.
-    pub fn carry(&mut self, sheets: &Sheets, changes: &[Vector3<f64>]) -> Result<(), FluidError> {
+    pub fn carry(&mut self, sheets: &mut Sheets, changes: &[Vector3<f64>]) -> Result<(), FluidError> {
         let (found, expected) = (changes.len(), sheets.impulses().len());
         if found != expected {
             return Err(FluidError::Length { what: "changes of velocity", found, expected });
@@ -93,7 +94,8 @@ impl<R: Restraint> Fluid<R> {
         self.state.by_sheets.resize(self.state.len(), [0.0; 4]);
         take_away(&mut self.state.a, &mut self.state.by_sheets);
         sheets.list(&self.laws, &self.state.x, 0.0);
-        sheets.densities(&self.laws, &self.state.x, &mut self.state.by_sheets);
+        sheets.find_touches(&self.laws, &self.state.x);
+        sheets.densities(&self.laws, &mut self.state.by_sheets);
         seconds.sheets += clock.elapsed().as_secs_f64();
     }
 

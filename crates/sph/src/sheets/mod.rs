@@ -1,10 +1,8 @@
 //! Surfaces that move through a fluid: cloth and bodies, without thickness, wet on both sides.
 //!
-//! They are sampled by particles (Akinci2012), each of which stands for a part of a triangle: its mass
-//! of fluid follows from the area of the part, and what it does to the fluid the corners of the
-//! triangle suffer, by barycentric weights. Samples carry no pressure of their own (Akinci2012 Eq. (9)).
-//! These forces keep fluid half a spacing off; what they fail to do [`side`] does: no particle comes to
-//! the other side of a surface.
+//! What they do to the fluid the corners of their triangles suffer, by barycentric weights, see
+//! `forces`. That keeps fluid half a spacing off; what it fails to do `side` does: no particle comes to
+//! the other side of a surface. Triangles near a particle are found by points that sample them.
 
 mod forces;
 mod meet;
@@ -13,13 +11,16 @@ mod side;
 mod triangle;
 
 use crate::grid::Point;
-use crate::kernel::CubicSpline;
 use crate::settings::{Bounds, FluidError};
+use forces::Touch;
+pub(crate) use forces::Surface;
 use nalgebra::Vector3;
 use near::Near;
 
 /// Edges of the parts that samples stand for are no longer than this, in spacings (1).
 const PART: f64 = 0.75;
+/// No point of a part is farther from its middle than two thirds of its longest edge (1).
+const FARTHEST: f64 = 2.0 / 3.0 * PART;
 /// Most samples of all surfaces.
 const MOST_SAMPLES: f64 = 2e7;
 
@@ -41,13 +42,13 @@ pub struct Sheets {
     duration: f64,
     gone: f64,
     samples: Vec<Sample>,
-    /// Places of samples (m) and the masses of fluid that they stand for (kg).
+    /// Places of samples (m), and 0.
     places: Vec<Point>,
-    /// Velocities of samples (m/s), and 0.
-    velocities: Vec<Point>,
+    /// Velocities of the corners (m/s).
+    velocities: Vec<Vector3<f64>>,
     near: Near,
-    /// Forces by the fluid as it is: on samples and on corners (N).
-    on_samples: Vec<[f64; 3]>,
+    /// What touches, by ascending particles, and the forces on corners by it (N).
+    touches: Vec<Touch>,
     forces: Vec<Vector3<f64>>,
     /// What the corners have got since the start (N s).
     impulses: Vec<Vector3<f64>>,
@@ -61,8 +62,6 @@ struct Sample {
     triangle: u32,
     /// Barycentric coordinates of its middle (1).
     weights: [f64; 3],
-    /// Its share in the area of the triangle (1).
-    share: f64,
 }
 
 impl Sheets {
@@ -95,9 +94,9 @@ impl Sheets {
             gone: 0.0,
             samples: Vec::new(),
             places: Vec::new(),
-            velocities: Vec::new(),
+            velocities: zeros.clone(),
             near: Near::default(),
-            on_samples: Vec::new(),
+            touches: Vec::new(),
             forces: zeros.clone(),
             impulses: zeros,
             changed: Vec::new(),
@@ -157,7 +156,6 @@ impl Sheets {
         for (triangle, &n) in (0..).zip(&parts) {
             sample(triangle, n as u32, &mut self.samples);
         }
-        self.on_samples.resize(self.samples.len(), [0.0; 3]);
         self.impulses.fill(Vector3::zeros());
         (self.gone, self.duration) = (0.0, 0.0);
         self.near.forget();
@@ -177,21 +175,14 @@ impl Sheets {
         Some(all.fold(start, |b, x| Bounds::new(b.min.inf(x), b.max.sup(x))))
     }
 
-    /// Sets the time (s) in which the corners go their ways, and the masses of the samples by `density`
-    /// (kg/m²).
-    pub(crate) fn start(&mut self, duration: f64, density: f64) {
+    /// Sets the time (s) in which the corners go their ways; 0 if they stand still.
+    pub(crate) fn start(&mut self, duration: f64) {
         (self.duration, self.gone) = (duration, 0.0);
-        self.places.clear();
-        self.velocities.clear();
-        for sample in &self.samples {
-            let corners = self.triangles[sample.triangle as usize];
-            let [a, b, c] = corners.map(|k| self.x[k as usize]);
-            let area = 0.5 * (b - a).cross(&(c - a)).norm() * sample.share;
-            let way = triangle::at(&sample.weights, &corners.map(|k| self.ways[k as usize]));
-            let v = if duration > 0.0 { way / duration } else { Vector3::zeros() };
-            self.velocities.push([v.x, v.y, v.z, 0.0]);
-            self.places.push([0.0, 0.0, 0.0, density * area]);
+        for (v, way) in self.velocities.iter_mut().zip(&self.ways) {
+            *v = if duration > 0.0 { way / duration } else { Vector3::zeros() };
         }
+        self.places.clear();
+        self.places.resize(self.samples.len(), [0.0; 4]);
         self.put_samples();
     }
 
@@ -225,17 +216,16 @@ impl Sheets {
         for (place, sample) in self.places.iter_mut().zip(&self.samples) {
             let corners = self.triangles[sample.triangle as usize].map(|k| self.x[k as usize]);
             let x = triangle::at(&sample.weights, &corners);
-            *place = [x.x, x.y, x.z, place[3]];
+            *place = [x.x, x.y, x.z, 0.0];
         }
     }
 }
 
 /// The parts of a triangle: `n` along each edge.
 fn sample(triangle: u32, n: u32, samples: &mut Vec<Sample>) {
-    let share = 1.0 / (f64::from(n) * f64::from(n));
     let mut push = |s: f64, t: f64| {
         let (s, t) = (s / f64::from(n), t / f64::from(n));
-        samples.push(Sample { triangle, weights: [1.0 - s - t, s, t], share });
+        samples.push(Sample { triangle, weights: [1.0 - s - t, s, t] });
     };
     for i in 0..n {
         for j in 0..n - i {
@@ -246,24 +236,4 @@ fn sample(triangle: u32, n: u32, samples: &mut Vec<Sample>) {
             }
         }
     }
-}
-
-/// The mass of fluid that a surface stands for (kg/m²): half a spacing from a plane surface, where the
-/// first layer of a lattice lies, it makes up for the layers that are missing behind it.
-pub(crate) fn surface_density(kernel: &CubicSpline, spacing: f64, rest_density: f64) -> f64 {
-    let n = (kernel.support() / spacing).ceil() as i64;
-    let layer = |z: i64| -> f64 {
-        let squared = |x: i64, y: i64| ((x * x + y * y + z * z) as f64) * spacing * spacing;
-        (-n..=n).map(|y| (-n..=n).map(|x| kernel.value(squared(x, y))).sum::<f64>()).sum()
-    };
-    let missing = (1..=n).map(layer).sum::<f64>() / (-n..=n).map(layer).sum::<f64>();
-    // ∫ W over a plane at half a spacing: 2π ∫ W(r) r dr from there to the end of the support.
-    let (low, high) = (0.5 * spacing, kernel.support());
-    let steps = 2000;
-    let dr = (high - low) / f64::from(steps);
-    let ring = |k: i32| {
-        let r = low + (f64::from(k) + 0.5) * dr;
-        2.0 * std::f64::consts::PI * r * kernel.value(r * r) * dr
-    };
-    rest_density * missing / (0..steps).map(ring).sum::<f64>()
 }

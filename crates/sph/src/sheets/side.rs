@@ -7,7 +7,7 @@
 //! is an inelastic impact.
 
 use super::near::squared_distance;
-use super::{PART, Sheets, triangle};
+use super::{FARTHEST, Sheets, triangle};
 use crate::grid::Point;
 use crate::motion::Moved;
 use crate::settings::Bounds;
@@ -88,8 +88,7 @@ impl Sheets {
                 continue;
             }
             let longest = way.norm() + 2.0 * (surface_way + floor);
-            // No point of a part is farther from its middle than two thirds of its longest edge.
-            let reach = 2.0 / 3.0 * PART * self.spacing + longest + surface_way;
+            let reach = FARTHEST * self.spacing + longest + surface_way;
             if self.near.nearest[k] > reach * reach {
                 continue;
             }
