@@ -81,7 +81,8 @@ pub fn restore(world: &mut World, checkpoint: &Checkpoint) -> Result<(), Restore
         false => None,
     };
     if let Some(water) = &mut world.fluid {
-        fluid::restore(water, checkpoint)?;
+        let n_vertices = cloth.as_ref().map(|(cloth, _)| cloth.x.len());
+        fluid::restore(water, checkpoint, n_vertices)?;
     }
     if let Some((cloth, handles)) = cloth {
         (world.cloth, world.handles) = (cloth, handles);

@@ -334,7 +334,7 @@ impl<R: Restraint> Fluid<R> {
     }
 
     /// Sorts the particles and lists their neighbours.
-    fn list_neighbours(&mut self) {
+    pub(crate) fn list_neighbours(&mut self) {
         self.neighbours.sort(&self.state.x, self.reach(), &mut self.scratch.order);
         self.state.sort(&self.scratch.order, &mut self.scratch.spare);
         self.listed.clone_from(&self.state.x);

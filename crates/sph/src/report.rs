@@ -62,8 +62,7 @@ impl Seconds {
 
     /// All stages (s).
     pub fn total(&self) -> f64 {
-        self.motion + self.neighbours + self.density + self.force + self.changes
-            + self.sheets
+        self.motion + self.neighbours + self.density + self.force + self.changes + self.sheets
     }
 }
 

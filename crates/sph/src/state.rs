@@ -49,18 +49,23 @@ impl State {
     /// Keeps the particles for which `keep` is true, in their order.
     pub(crate) fn retain(&mut self, keep: impl Fn(&Point) -> bool) {
         let kept: Vec<bool> = self.x.iter().map(keep).collect();
+        self.keep(&kept);
+    }
+
+    /// Keeps the particles that are marked.
+    pub(crate) fn keep(&mut self, kept: &[bool]) {
         fn filter<T>(list: &mut Vec<T>, kept: &[bool]) {
             let mut at = kept.iter();
             list.retain(|_| *at.next().expect("as many as particles"));
         }
-        filter(&mut self.x, &kept);
-        filter(&mut self.w, &kept);
-        filter(&mut self.u, &kept);
-        filter(&mut self.a, &kept);
-        filter(&mut self.density, &kept);
-        filter(&mut self.id, &kept);
+        filter(&mut self.x, kept);
+        filter(&mut self.w, kept);
+        filter(&mut self.u, kept);
+        filter(&mut self.a, kept);
+        filter(&mut self.density, kept);
+        filter(&mut self.id, kept);
         if !self.by_sheets.is_empty() {
-            filter(&mut self.by_sheets, &kept);
+            filter(&mut self.by_sheets, kept);
         }
     }
 

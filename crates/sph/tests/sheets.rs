@@ -106,7 +106,8 @@ fn no_particle_passes_a_plate_that_sweeps_through_a_tank() {
         // squeezes and drags too.
         let middle = Vector3::new(4.0, 4.0, 6.0) * SPACING;
         let (mut sheets, mut x) = plate(6, 8.6 * SPACING, middle, 0.004);
-        let height = |p: &Vector3<f64>, x: &Vectors| p.z - x.iter().map(|x| x.z).sum::<f64>() / 49.0;
+        let height =
+            |p: &Vector3<f64>, x: &Vectors| p.z - x.iter().map(|x| x.z).sum::<f64>() / 49.0;
         let above = |fluid: &Fluid<Speed>, x: &Vectors| -> Vec<bool> {
             fluid.particles_by_id().iter().map(|p| height(&p.position, x) > 0.0).collect()
         };

@@ -2,6 +2,7 @@
 
 mod build;
 mod columns;
+mod meeting;
 pub(crate) mod policy;
 pub(crate) mod settings;
 
@@ -11,6 +12,7 @@ pub use policy::Policy;
 
 use crate::report::{FluidSeconds, FluidSummary};
 use arps::Motion;
+use mesh_core::{ClothState, World3};
 use sph::{Fluid, FluidError, StepReport};
 
 /// The fluid of a world.
@@ -22,6 +24,16 @@ pub struct Water {
     pub fluid: Fluid<Policy>,
     /// Whether a policy restrains its particles.
     pub is_restrained: bool,
+    /// What of cloth and bodies moves in it, if anything may.
+    pub(crate) meeting: Option<meeting::Meeting>,
+}
+
+/// The state of a fluid between two frames.
+#[derive(Clone, Debug)]
+pub(crate) struct Saved {
+    pub(crate) fluid: sph::Checkpoint,
+    /// What cloth has yet to get from it: on every vertex (N s).
+    pub(crate) pending: Vec<World3>,
 }
 
 /// A particle as recordings show it: 0 moves freely, 1 is in transition, 2 rests.
@@ -34,6 +46,38 @@ fn state(motion: Motion) -> u8 {
 }
 
 impl Water {
+    /// The state as it is.
+    pub(crate) fn save(&self) -> Saved {
+        let pending = self.meeting.as_ref().map_or(&[][..], |meeting| meeting.pending());
+        Saved { fluid: self.fluid.checkpoint(), pending: pending.to_vec() }
+    }
+
+    /// Goes back to a state.
+    ///
+    /// # Errors
+    /// If it is none of this fluid; nothing is changed then.
+    pub(crate) fn restore(&mut self, saved: &Saved) -> Result<(), FluidError> {
+        self.fluid.restore(&saved.fluid)?;
+        if let Some(meeting) = &mut self.meeting {
+            meeting.set_pending(saved.pending.clone());
+            meeting.report();
+            meeting.forget();
+        }
+        Ok(())
+    }
+
+    /// Steps of cloth and fluid together in a time (s); 0 if they do not meet and no body moves.
+    pub(crate) fn steps_among_others(&self, time: f64) -> u32 {
+        self.meeting.as_ref().map_or(0, |meeting| meeting.n_steps(time, self.fluid.settings()))
+    }
+
+    /// Follows the remeshing of cloth whose vertices had these lasting numbers and positions (m).
+    pub(crate) fn follow(&mut self, names: &[u64], x: &[World3], cloth: &ClothState) {
+        if let Some(meeting) = &mut self.meeting {
+            meeting.follow(names, x, cloth);
+        }
+    }
+
     /// Lets time (s) go by.
     ///
     /// # Errors
@@ -67,7 +111,7 @@ impl Water {
         self.fluid.motions().for_each(|motion| n[usize::from(state(motion))] += 1);
         let [active, transition, restrained] = n;
         let energy = self.fluid.energy();
-        let sph::Seconds { motion, neighbours, density, force, changes } = done.seconds;
+        let sph::Seconds { motion, neighbours, density, force, changes, sheets } = done.seconds;
         FluidSummary {
             particles: self.fluid.len(),
             active,
@@ -82,11 +126,13 @@ impl Water {
             listings: done.listings,
             emitted: done.emitted,
             drained: done.drained,
+            stopped: done.stopped,
+            squeezed: done.squeezed,
             density_max_kg_per_m3: self.fluid.particles().map(|p| p.density).fold(0.0, f64::max),
             kinetic_energy_j: energy.kinetic,
             internal_energy_j: energy.internal,
             potential_energy_j: energy.potential,
-            seconds: FluidSeconds { motion, neighbours, density, force, changes },
+            seconds: FluidSeconds { motion, neighbours, density, force, changes, sheets },
         }
     }
 }

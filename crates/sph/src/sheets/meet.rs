@@ -42,6 +42,26 @@ impl<R: Restraint> Fluid<R> {
         Ok(report)
     }
 
+    /// Takes out the particles that are where surfaces that stand still want room, before the first
+    /// step; those that are left are numbered anew.
+    pub fn leave_room(&mut self, sheets: &mut Sheets) {
+        sheets.start(0.0);
+        sheets.list(&self.laws, &self.state.x, 0.0);
+        sheets.find_touches(&self.laws, &self.state.x);
+        if sheets.touches.is_empty() {
+            return;
+        }
+        let mut keep = vec![true; self.state.len()];
+        sheets.touches.iter().for_each(|touch| keep[touch.particle as usize] = false);
+        self.state.keep(&keep);
+        self.state.id = (0..self.state.len() as u64).collect();
+        self.next_id = self.state.len() as u64;
+        self.list_neighbours();
+        self.evaluate_all(&mut Seconds::default());
+        self.hardest = hardest(&self.state.a);
+        sheets.forget_particles();
+    }
+
     /// The mass of fluid near every corner of surfaces that stand still (kg): that of each particle
     /// within the support of a surface, shared out among the corners next to it.
     pub fn masses_near(&self, sheets: &mut Sheets) -> Vec<f64> {
@@ -60,7 +80,11 @@ impl<R: Restraint> Fluid<R> {
     ///
     /// # Errors
     /// If there are not as many changes as corners.
-    pub fn carry(&mut self, sheets: &mut Sheets, changes: &[Vector3<f64>]) -> Result<(), FluidError> {
+    pub fn carry(
+        &mut self,
+        sheets: &mut Sheets,
+        changes: &[Vector3<f64>],
+    ) -> Result<(), FluidError> {
         let (found, expected) = (changes.len(), sheets.impulses().len());
         if found != expected {
             return Err(FluidError::Length { what: "changes of velocity", found, expected });

@@ -12,8 +12,8 @@ mod triangle;
 
 use crate::grid::Point;
 use crate::settings::{Bounds, FluidError};
-use forces::Touch;
 pub(crate) use forces::Surface;
+use forces::Touch;
 use nalgebra::Vector3;
 use near::Near;
 
