@@ -240,6 +240,11 @@ impl World {
         Ok(())
     }
 
+    /// Steps of the cloth in a frame: those of the scene, or more where cloth meets fluid.
+    pub fn substeps(&self) -> u32 {
+        self.substeps
+    }
+
     /// Simulated time of the last finished frame (s).
     pub fn time(&self) -> f64 {
         self.frame as f64 * self.frame_s
@@ -340,7 +345,8 @@ impl World {
                 self.prepared = None;
                 self.handles.follow(&before, next, &done.report.journal);
                 if let Some(water) = &mut self.fluid {
-                    water.follow(&before, &x_before, &self.cloth);
+                    let scene = (&self.garments[..], &self.obstacles[..]);
+                    water.follow((&before, &x_before), &self.cloth, scene, end);
                 }
             }
             (seconds.view, seconds.sizing) = (done.view_s, done.sizing_s);

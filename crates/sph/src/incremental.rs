@@ -14,7 +14,7 @@ use crate::lanes::{self, Four, LANES};
 use crate::neighbours::Neighbours;
 use crate::pair::{Laws, Side, transpose};
 use crate::state::State;
-use crate::sweep::{self, Marked, Stale};
+use crate::sweep::{self, Marked};
 use crate::walls::WallState;
 use pulp::{Simd, WithSimd};
 
@@ -96,13 +96,13 @@ impl Update<'_> {
         self.changes.marks.resize(self.state.len(), 0);
         self.changes.wall_marks.resize(self.walls.x.len(), 0);
         self.mark_movers();
-        let (sums_are_cheaper, density_pairs) = match self.touched_by_movers() {
-            Some(pairs) => (true, self.densities_anew(pairs)),
-            None => (false, lanes::run(DensityChanges(&mut self))),
+        let density_pairs = match self.touched_by_movers() {
+            Some(pairs) => self.densities_anew(pairs),
+            None => lanes::run(DensityChanges(&mut self)),
         };
         self.pressures();
         let force_pairs = match self.touched_by_changes() {
-            Some(pairs) => self.accelerations_anew(pairs, sums_are_cheaper),
+            Some(pairs) => self.accelerations_anew(pairs),
             None => lanes::run(ForceChanges(&mut self)),
         };
         let changed = self.changes.changed.len() as u64;
@@ -179,10 +179,9 @@ impl Update<'_> {
     }
 
     /// Computes stale accelerations anew.
-    fn accelerations_anew(&mut self, n_pairs: u64, densities_are_new: bool) -> u64 {
+    fn accelerations_anew(&mut self, n_pairs: u64) -> u64 {
         let only = Marked { marks: &self.changes.marks, bits: STALE };
-        let known = if densities_are_new { TOUCHED } else { 0 };
-        let stale = (self.gravity, Some(Stale { only, known }));
+        let stale = (self.gravity, Some(only));
         let State { x, w, a, .. } = &mut *self.state;
         sweep::accelerations(self.laws, x, w, self.walls, self.neighbours, stale, a);
         n_pairs
@@ -236,6 +235,9 @@ impl Update<'_> {
                 }
             }
             density[i] += own;
+        }
+        for &i in touched.iter() {
+            self.neighbours.outdate(i as usize);
         }
         n_pairs
     }

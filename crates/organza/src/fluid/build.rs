@@ -1,7 +1,7 @@
 //! From the fluid of a scene to particles between walls.
 
-use super::policy::{self, Policy};
 use super::meeting::Meeting;
+use super::policy::{self, Policy};
 use super::{Water, settings};
 use crate::build::Garment;
 use crate::obstacle::Obstacle;

@@ -108,5 +108,7 @@ pub(crate) fn restore(
         layers: u64s(LAYERS)?.to_vec(),
         incremental: incremental != 0,
     };
-    water.restore(&Saved { fluid: state, pending }).map_err(|source| RestoreError::Fluid { frame, source })
+    water
+        .restore(&Saved { fluid: state, pending })
+        .map_err(|source| RestoreError::Fluid { frame, source })
 }

@@ -93,13 +93,30 @@ impl Meeting {
         std::mem::take(&mut self.done)
     }
 
-    /// Hands the impulses on vertices, with these lasting numbers at these positions (m), to those of
-    /// the remeshed cloth: what a vertex had that is gone, the nearest gets.
-    pub(crate) fn follow(&mut self, names: &[u64], x: &[World3], cloth: &ClothState) {
-        self.forget();
+    /// After remeshing of cloth whose vertices had these lasting numbers at these positions (m), at a
+    /// time (s): fluid stays on its side, and impulses go over to the new vertices.
+    pub(super) fn follow(
+        &mut self,
+        fluid: &mut Fluid<Policy>,
+        (names, x): (&[u64], &[World3]),
+        cloth: &ClothState,
+        (garments, obstacles): (&[Garment], &[Obstacle]),
+        time: f64,
+    ) {
         if !self.has_cloth {
             return;
         }
+        self.hand_over(names, x, cloth);
+        let Some(mut old) = self.sheets.take() else { return };
+        // If they cannot be placed the next step says so, and the frame is whole until then.
+        if let Ok(new) = self.place(cloth, garments, obstacles, time) {
+            fluid.keep_sides(&mut old, new);
+        }
+    }
+
+    /// Hands the impulses on vertices, with these lasting numbers at these positions (m), to those of
+    /// the remeshed cloth: what a vertex had that is gone, the nearest gets.
+    fn hand_over(&mut self, names: &[u64], x: &[World3], cloth: &ClothState) {
         let mut place: Vec<(u64, u32)> = cloth.mesh.uids().iter().copied().zip(0..).collect();
         place.sort_unstable();
         let mut pending = vec![World3::zeros(); cloth.x.len()];
@@ -205,7 +222,8 @@ impl Meeting {
         load: &Load,
     ) -> Result<(), FluidError> {
         let Some(sheets) = &mut self.sheets else { return Ok(()) };
-        let mut changes: Vec<World3> = cloth.v.iter().zip(&load.before).map(|(a, b)| a - b).collect();
+        let mut changes: Vec<World3> =
+            cloth.v.iter().zip(&load.before).map(|(a, b)| a - b).collect();
         changes.resize(sheets.impulses().len(), World3::zeros());
         fluid.carry(sheets, &changes)
     }

@@ -10,6 +10,8 @@ pub(crate) use build::water;
 pub(crate) use columns::{columns, restore};
 pub use policy::Policy;
 
+use crate::build::Garment;
+use crate::obstacle::Obstacle;
 use crate::report::{FluidSeconds, FluidSummary};
 use arps::Motion;
 use mesh_core::{ClothState, World3};
@@ -66,15 +68,27 @@ impl Water {
         Ok(())
     }
 
+    /// The impulse that cloth has yet to get from the fluid (N s).
+    pub fn on_its_way(&self) -> World3 {
+        self.meeting.as_ref().map_or_else(World3::zeros, |meeting| meeting.pending().iter().sum())
+    }
+
     /// Steps of cloth and fluid together in a time (s); 0 if they do not meet and no body moves.
     pub(crate) fn steps_among_others(&self, time: f64) -> u32 {
         self.meeting.as_ref().map_or(0, |meeting| meeting.n_steps(time, self.fluid.settings()))
     }
 
-    /// Follows the remeshing of cloth whose vertices had these lasting numbers and positions (m).
-    pub(crate) fn follow(&mut self, names: &[u64], x: &[World3], cloth: &ClothState) {
+    /// Follows the remeshing of cloth at a time (s), whose vertices had these lasting numbers and
+    /// positions (m).
+    pub(crate) fn follow(
+        &mut self,
+        before: (&[u64], &[World3]),
+        cloth: &ClothState,
+        scene: (&[Garment], &[Obstacle]),
+        time: f64,
+    ) {
         if let Some(meeting) = &mut self.meeting {
-            meeting.follow(names, x, cloth);
+            meeting.follow(&mut self.fluid, before, cloth, scene, time);
         }
     }
 

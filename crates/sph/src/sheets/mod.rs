@@ -7,6 +7,7 @@
 mod forces;
 mod meet;
 mod near;
+mod remade;
 mod side;
 mod triangle;
 

@@ -15,7 +15,7 @@ use crate::state::State;
 use nalgebra::Vector3;
 
 /// Distance from a surface at which a particle stops coming closer, in spacings (1).
-const FLOOR: f64 = 0.1;
+pub(super) const FLOOR: f64 = 0.1;
 /// How often a path is looked at again. Each time at most half of the distance is used up.
 const ROUNDS: usize = 64;
 

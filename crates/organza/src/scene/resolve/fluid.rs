@@ -39,7 +39,8 @@ pub(super) fn resolve(
     if let Some(restraint) = &file.restraint {
         check_restraint(restraint, &at.key("restraint"));
     }
-    let obstacles = obstacles.map(|all| all.iter().map(|obstacle| obstacle.name.as_str()).collect());
+    let obstacles =
+        obstacles.map(|all| all.iter().map(|obstacle| obstacle.name.as_str()).collect());
     let obstacles = find(file.obstacles.as_deref(), obstacles, "obstacle", &at.key("obstacles"));
     let cloths = cloths.map(|all| all.iter().map(|cloth| cloth.name.as_str()).collect());
     let cloths = find(file.cloths.as_deref(), cloths, "cloth", &at.key("cloths"));
