@@ -81,7 +81,7 @@ fn water_stays_on_its_side_of_cloth_that_gives_way() {
         select: { corners: ['upper-left', 'upper-right', 'lower-left', 'lower-right'] } }],";
     for cloth in ["", "remeshing: { size_m: { min: 0.04, max: 0.2 }, refine_angle: 0.3 },"] {
         let mut world = world(&scene(&collision(hold, cloth, "")));
-        for _ in 0..12 {
+        for _ in 0..7 {
             let report = world.advance().unwrap();
             assert_eq!(report.fluid.unwrap().squeezed, 0, "{report:?}");
         }
@@ -101,7 +101,7 @@ fn water_stays_on_its_side_of_cloth_that_gives_way() {
         let under = water.fluid.particles().filter(|p| is_under(&p.position)).count();
         assert_eq!(under, 0, "of {}", water.fluid.len());
         let lowest = x.iter().map(|x| x.z).fold(f64::INFINITY, f64::min);
-        assert!(lowest < -0.01, "the sheet has not moved: {lowest}");
+        assert!(lowest < -0.03, "the sheet has not moved: {lowest}");
     }
 }
 

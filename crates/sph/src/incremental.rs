@@ -36,6 +36,10 @@ const MOST_CHANGED: f64 = 0.4;
 /// which both ends of a pair get the difference, and accelerations. Measured.
 const DENSITY_COST: f64 = 2.0;
 const FORCE_COST: f64 = 2.5;
+/// The same for densities where so many move, as a part of all (1), that accelerations will be computed
+/// anew: these need the active neighbours, which new sums find and the update of pairs makes useless.
+const MANY_MOVERS: f64 = 0.1;
+const DENSITY_COST_OF_MANY: f64 = 5.0;
 
 /// What is remembered from step to step.
 #[derive(Clone, Debug, Default)]
@@ -130,7 +134,10 @@ impl Update<'_> {
     /// together. Returns the number of their pairs.
     fn touched_by_movers(&mut self) -> Option<u64> {
         let Changes { marks, touched, wall_marks, touched_walls, .. } = &mut *self.changes;
-        let most = (DENSITY_COST * self.movers.len() as f64) as usize;
+        let n_movers = self.movers.len() as f64;
+        let are_many = n_movers > MANY_MOVERS * marks.len() as f64;
+        let cost = if are_many { DENSITY_COST_OF_MANY } else { DENSITY_COST };
+        let most = (cost * n_movers) as usize;
         let (n_before, n_walls_before) = (touched.len(), touched_walls.len());
         for &mover in self.movers {
             touch(self.neighbours.candidates(mover as usize), TOUCHED, marks, touched);
