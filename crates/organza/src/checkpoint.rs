@@ -81,8 +81,7 @@ pub fn restore(world: &mut World, checkpoint: &Checkpoint) -> Result<(), Restore
         false => None,
     };
     if let Some(water) = &mut world.fluid {
-        let n_vertices = cloth.as_ref().map(|(cloth, _)| cloth.x.len());
-        fluid::restore(water, checkpoint, n_vertices)?;
+        fluid::restore(water, checkpoint)?;
     }
     if let Some((cloth, handles)) = cloth {
         (world.cloth, world.handles) = (cloth, handles);

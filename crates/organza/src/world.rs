@@ -258,7 +258,7 @@ impl World {
     pub fn advance(&mut self) -> Result<FrameReport, StepError> {
         // Nothing that can fail changes the mesh.
         let start = (self.cloth.x.clone(), self.cloth.v.clone(), self.handles.clone());
-        let fluid = self.fluid.as_ref().map(Water::save);
+        let fluid = self.fluid.as_ref().map(|water| water.fluid.checkpoint());
         self.make_frame().inspect_err(|_| {
             (self.cloth.x, self.cloth.v, self.handles) = start;
             if let (Some(water), Some(start)) = (&mut self.fluid, &fluid) {
@@ -308,7 +308,6 @@ impl World {
             // What passes through something is led out of it and does not sleep.
         } else if let Some(remeshing) = &self.remeshing {
             let (before, next) = (self.cloth.mesh.uids().to_vec(), self.cloth.mesh.next_uid());
-            let x_before = if together { self.cloth.x.clone() } else { Vec::new() };
             let keep = self.handles.names();
             let error = |source| StepError::Remesh { frame, source };
             let saved = self.contact.is_some().then(|| self.cloth.clone());
@@ -346,7 +345,7 @@ impl World {
                 self.handles.follow(&before, next, &done.report.journal);
                 if let Some(water) = &mut self.fluid {
                     let scene = (&self.garments[..], &self.obstacles[..]);
-                    water.follow((&before, &x_before), &self.cloth, scene, end);
+                    water.follow(&self.cloth, scene, end);
                 }
             }
             (seconds.view, seconds.sizing) = (done.view_s, done.sizing_s);

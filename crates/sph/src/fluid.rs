@@ -290,7 +290,7 @@ impl<R: Restraint> Fluid<R> {
             // As far as particles and surfaces may come towards each other.
             let ahead = (moved.fastest + sheets.speed()) * dt;
             sheets.list(&self.laws, &state.x, ahead);
-            sheets.push(dt);
+            sheets.push((dt, self.laws.mass), &state.by_sheets, &mut state.given);
             sheets.begin_step(dt);
             let is_restrained = self.restraint.is_some();
             let of_step = (self.laws.mass, dt);

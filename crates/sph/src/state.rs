@@ -21,6 +21,8 @@ pub(crate) struct State {
     /// What moving surfaces add to the acceleration (m/s²) and to the density (kg/m³); empty if there
     /// are none.
     pub(crate) by_sheets: Vec<Point>,
+    /// Impulse that moving surfaces have yet to get from each particle (N s), and 0; empty as well.
+    pub(crate) given: Vec<Point>,
 }
 
 impl State {
@@ -33,6 +35,12 @@ impl State {
         self.density[i] + self.by_sheets.get(i).map_or(0.0, |by| by[3])
     }
 
+    /// Makes room for what moving surfaces do.
+    pub(crate) fn meet_sheets(&mut self) {
+        self.by_sheets.resize(self.len(), [0.0; 4]);
+        self.given.resize(self.len(), [0.0; 4]);
+    }
+
     /// Adds a particle that moves freely.
     pub(crate) fn push(&mut self, id: u64, x: &Vector3<f64>, v: &Vector3<f64>) {
         self.x.push([x.x, x.y, x.z, 0.0]);
@@ -42,6 +50,7 @@ impl State {
         self.density.push(0.0);
         if !self.by_sheets.is_empty() {
             self.by_sheets.push([0.0; 4]);
+            self.given.push([0.0; 4]);
         }
         self.id.push(id);
     }
@@ -66,6 +75,7 @@ impl State {
         filter(&mut self.id, kept);
         if !self.by_sheets.is_empty() {
             filter(&mut self.by_sheets, kept);
+            filter(&mut self.given, kept);
         }
     }
 
@@ -79,6 +89,7 @@ impl State {
         gather(&mut self.id, order, &mut spare.ids);
         if !self.by_sheets.is_empty() {
             gather(&mut self.by_sheets, order, &mut spare.points);
+            gather(&mut self.given, order, &mut spare.points);
         }
     }
 }

@@ -72,6 +72,7 @@ fn what_the_fluid_loses_the_surface_gets() {
     let report = fluid.advance_among(0.06, &mut sheets).unwrap();
     let (after, lost) = (fluid.momentum(), sheets.impulses().iter().sum::<Vector3<f64>>());
     assert!(lost.norm() > 0.05 * before.norm(), "{lost:?} of {before:?}, {report:?}");
+    assert!((fluid.under_way() - lost).norm() < 1e-12 * lost.norm());
     let scale: f64 = sheets.impulses().iter().map(Vector3::norm).sum();
     assert!((after + lost - before).norm() < 1e-12 * scale, "{after:?} + {lost:?} = {before:?}");
 }
@@ -79,9 +80,9 @@ fn what_the_fluid_loses_the_surface_gets() {
 #[test]
 fn what_is_carried_is_what_is_near() {
     let mut fluid = free_ball(2);
-    let (mut sheets, x) = plate(9, 0.5, Vector3::new(0.01, 0.02, -3.6 * SPACING), 0.02);
+    let (mut sheets, mut x) = plate(9, 0.5, Vector3::new(0.01, 0.02, -3.6 * SPACING), 0.02);
     sheets.place(&x).unwrap();
-    let masses = fluid.masses_near(&mut sheets);
+    let (masses, _) = fluid.load(&mut sheets);
     let all: f64 = masses.iter().sum();
     assert!(all > 20.0 * fluid.particle_mass(), "{all}");
     let changes: Vectors = (0..x.len()).map(|k| Vector3::new(0.1, 0.02 * k as f64, -0.3)).collect();
@@ -89,6 +90,19 @@ fn what_is_carried_is_what_is_near() {
     fluid.carry(&mut sheets, &changes).unwrap();
     let given: Vector3<f64> = masses.iter().zip(&changes).map(|(m, v)| v * *m).sum();
     assert!((fluid.momentum() - before - given).norm() < 1e-12 * given.norm());
+
+    // Impulses go to the corners, all of them, and by mass they are no more than particles lost.
+    let report = push(&mut fluid, (&mut sheets, &mut x), Vector3::new(0.0, 0.0, 1.0), (1, 0.01));
+    let under_way = fluid.under_way();
+    assert!(under_way.z < -0.1, "{under_way:?}, {report:?}");
+    sheets.place(&x).unwrap();
+    let before = fluid.momentum();
+    let (masses, impulses) = fluid.load(&mut sheets);
+    // What is near no corner any more stays with the fluid.
+    let sum = impulses.iter().sum::<Vector3<f64>>() + fluid.momentum() - before;
+    assert!((sum - under_way).norm() < 1e-11 * under_way.norm());
+    assert_eq!(fluid.under_way(), Vector3::zeros());
+    assert!(impulses.iter().zip(&masses).all(|(j, m)| j.norm() <= 4.0 * m), "{impulses:?}");
 }
 
 #[test]

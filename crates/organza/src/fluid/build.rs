@@ -61,7 +61,7 @@ pub(crate) fn water(
         around.extend(box_around(&cloth.x));
     }
     let bodies: Vec<&Obstacle> = moving.iter().map(|&k| &obstacles[k]).collect();
-    let mut meeting = Meeting::new(&of.cloths, moving, garments.len(), cloth.x.len(), spacing);
+    let mut meeting = Meeting::new(&of.cloths, moving, garments.len(), spacing);
     let fluid_settings = settings::fluid(of, &around);
     let (mut x, mut v) = (Vec::new(), Vec::new());
     for block in &of.file.blocks {

@@ -1,9 +1,8 @@
 //! The exact state of a fluid as columns of a checkpoint.
 
-use super::{Saved, Water};
+use super::Water;
 use crate::checkpoint::RestoreError;
 use io_mcap::{Checkpoint, Column};
-use mesh_core::World3;
 
 /// Names of the columns, all of which a checkpoint with a fluid has.
 const NUMBERS: &str = "fluid numbers";
@@ -14,12 +13,11 @@ const DENSITIES: &str = "fluid densities";
 const WALLS: &str = "fluid walls";
 /// Only where cloth or bodies move in the fluid.
 const SHEETS: &str = "fluid by surfaces";
-const PENDING: &str = "fluid impulses";
+const GIVEN: &str = "fluid impulses";
 const POINTS: [&str; 5] = ["fluid x", "fluid w", "fluid u", "fluid a", "fluid listed"];
 
 /// The state of a fluid.
 pub(crate) fn columns(water: &Water) -> Vec<(String, Column)> {
-    let Saved { fluid: state, pending } = water.save();
     let sph::Checkpoint {
         time,
         id,
@@ -30,12 +28,13 @@ pub(crate) fn columns(water: &Water) -> Vec<(String, Column)> {
         a,
         density,
         by_sheets,
+        given,
         listed,
         walls,
         greatest: [fastest, hardest, farthest],
         layers,
         incremental,
-    } = state;
+    } = water.fluid.checkpoint();
     let mut columns = vec![
         (NUMBERS, Column::F64(vec![time, fastest, hardest, farthest])),
         (COUNTS, Column::U64(vec![next_id, incremental.into()])),
@@ -46,24 +45,18 @@ pub(crate) fn columns(water: &Water) -> Vec<(String, Column)> {
     ];
     if water.meeting.is_some() {
         columns.push((SHEETS, Column::F64(by_sheets.into_flattened())));
-        let pending = pending.iter().flat_map(|j| [j.x, j.y, j.z]).collect();
-        columns.push((PENDING, Column::F64(pending)));
+        columns.push((GIVEN, Column::F64(given.into_flattened())));
     }
     let points = [x, w, u, a, listed].map(|list| Column::F64(list.into_flattened()));
     columns.extend(POINTS.into_iter().zip(points));
     columns.into_iter().map(|(name, column)| (name.to_owned(), column)).collect()
 }
 
-/// Puts a fluid of the same scene into the state that `checkpoint` holds, in which cloth has
-/// `n_vertices` if there is any.
+/// Puts a fluid of the same scene into the state that `checkpoint` holds.
 ///
 /// # Errors
 /// If it does not fit; the fluid is then as it was.
-pub(crate) fn restore(
-    water: &mut Water,
-    checkpoint: &Checkpoint,
-    n_vertices: Option<usize>,
-) -> Result<(), RestoreError> {
+pub(crate) fn restore(water: &mut Water, checkpoint: &Checkpoint) -> Result<(), RestoreError> {
     let frame = checkpoint.frame;
     let bad = |column| RestoreError::Column { frame, column };
     let f64s = |column: &'static str| match checkpoint.column(column) {
@@ -85,12 +78,6 @@ pub(crate) fn restore(
         return Err(bad(WALLS));
     }
     let meets = water.meeting.is_some();
-    let (pending, rest) = if meets { f64s(PENDING)?.as_chunks::<3>() } else { (&[][..], &[][..]) };
-    // As many as the cloth of this frame has vertices.
-    if !rest.is_empty() || n_vertices.is_some_and(|n| meets && pending.len() != n) {
-        return Err(bad(PENDING));
-    }
-    let pending = pending.iter().map(|j| World3::from(*j)).collect();
     let [x, w, u, a, listed] = POINTS;
     let state = sph::Checkpoint {
         time,
@@ -102,13 +89,13 @@ pub(crate) fn restore(
         a: points(a)?,
         density: f64s(DENSITIES)?.to_vec(),
         by_sheets: if meets { points(SHEETS)? } else { Vec::new() },
+        given: if meets { points(GIVEN)? } else { Vec::new() },
         listed: points(listed)?,
         walls: walls.to_vec(),
         greatest: [fastest, hardest, farthest],
         layers: u64s(LAYERS)?.to_vec(),
         incremental: incremental != 0,
     };
-    water
-        .restore(&Saved { fluid: state, pending })
+    water.restore(&state)
         .map_err(|source| RestoreError::Fluid { frame, source })
 }

@@ -1,7 +1,7 @@
 //! The join of a fluid with what moves in it: cloth, and bodies on their prescribed ways.
 //!
 //! A frame is cut into steps in which first the cloth moves, then the fluid, among the straight ways that
-//! the cloth and the bodies go in that time. What the fluid does to the cloth, an impulse on every vertex,
+//! the cloth and the bodies go in that time. What the fluid does to the cloth, an impulse by every particle,
 //! the cloth gets at the start of its next step. Light cloth before heavy water would be thrown back and
 //! forth by that: so the cloth moves with the mass of the fluid near it added to its own, and what this
 //! fluid took of the change of velocity it gets (the added mass, Causin2005). So momentum is conserved to
@@ -30,8 +30,6 @@ pub(crate) struct Meeting {
     /// Triangles of the cloth and the obstacles; absent after the mesh has changed.
     sheets: Option<Sheets>,
     spacing: f64,
-    /// What the cloth has yet to get from the fluid: on every vertex (N s).
-    pending: Vec<World3>,
     /// What was done since [`Meeting::report`].
     done: StepReport,
 }
@@ -51,7 +49,6 @@ impl Meeting {
         cloths: &[usize],
         obstacles: Vec<usize>,
         n_garments: usize,
-        n_vertices: usize,
         spacing: f64,
     ) -> Option<Meeting> {
         let garments: Vec<bool> = (0..n_garments).map(|k| cloths.contains(&k)).collect();
@@ -63,7 +60,6 @@ impl Meeting {
             obstacles,
             sheets: None,
             spacing,
-            pending: vec![World3::zeros(); if has_cloth { n_vertices } else { 0 }],
             done: StepReport::default(),
         })
     }
@@ -78,59 +74,24 @@ impl Meeting {
         self.sheets = None;
     }
 
-    /// Impulses that the cloth has yet to get (N s); empty if the fluid meets none.
-    pub(crate) fn pending(&self) -> &[World3] {
-        &self.pending
-    }
-
-    /// Puts such impulses back, as many as there are vertices.
-    pub(crate) fn set_pending(&mut self, pending: Vec<World3>) {
-        self.pending = pending;
-    }
-
     /// What was done since the last call.
     pub(crate) fn report(&mut self) -> StepReport {
         std::mem::take(&mut self.done)
     }
 
-    /// After remeshing of cloth whose vertices had these lasting numbers at these positions (m), at a
-    /// time (s): fluid stays on its side, and impulses go over to the new vertices.
+    /// After remeshing of cloth, at a time (s): fluid stays on its side.
     pub(super) fn follow(
         &mut self,
         fluid: &mut Fluid<Policy>,
-        (names, x): (&[u64], &[World3]),
         cloth: &ClothState,
         (garments, obstacles): (&[Garment], &[Obstacle]),
         time: f64,
     ) {
-        if !self.has_cloth {
-            return;
-        }
-        self.hand_over(names, x, cloth);
-        let Some(mut old) = self.sheets.take() else { return };
+        let Some(mut old) = self.sheets.take().filter(|_| self.has_cloth) else { return };
         // If they cannot be placed the next step says so, and the frame is whole until then.
         if let Ok(new) = self.place(cloth, garments, obstacles, time) {
             fluid.keep_sides(&mut old, new);
         }
-    }
-
-    /// Hands the impulses on vertices, with these lasting numbers at these positions (m), to those of
-    /// the remeshed cloth: what a vertex had that is gone, the nearest gets.
-    fn hand_over(&mut self, names: &[u64], x: &[World3], cloth: &ClothState) {
-        let mut place: Vec<(u64, u32)> = cloth.mesh.uids().iter().copied().zip(0..).collect();
-        place.sort_unstable();
-        let mut pending = vec![World3::zeros(); cloth.x.len()];
-        for ((name, x), impulse) in names.iter().zip(x).zip(&self.pending) {
-            if *impulse == World3::zeros() {
-                continue;
-            }
-            let at = match place.binary_search_by_key(name, |&(name, _)| name) {
-                Ok(at) => place[at].1 as usize,
-                Err(_) => nearest(&cloth.x, x),
-            };
-            pending[at] += impulse;
-        }
-        self.pending = pending;
     }
 
     /// Where all corners are at a time (s): vertices of the cloth, then those of the bodies (m).
@@ -191,7 +152,7 @@ impl Meeting {
     /// the fluid is nowhere near and has done nothing.
     pub(crate) fn load(
         &mut self,
-        fluid: &Fluid<Policy>,
+        fluid: &mut Fluid<Policy>,
         cloth: &mut ClothState,
         (garments, obstacles): (&[Garment], &[Obstacle]),
         time: f64,
@@ -201,15 +162,14 @@ impl Meeting {
         if !has_cloth {
             return Ok(None);
         }
-        let mut masses = fluid.masses_near(sheets);
+        let (mut masses, impulses) = fluid.load(sheets);
         masses.truncate(cloth.x.len());
-        let is_dry = masses.iter().all(|mass| *mass == 0.0);
-        if is_dry && self.pending.iter().all(|impulse| *impulse == World3::zeros()) {
+        if masses.iter().all(|mass| *mass == 0.0) {
             return Ok(None);
         }
         let before = cloth.v.clone();
-        for (k, impulse) in self.pending.iter_mut().enumerate() {
-            cloth.v[k] += std::mem::take(impulse) / (cloth.m[k] + masses[k]);
+        for (k, mass) in masses.iter().enumerate() {
+            cloth.v[k] += impulses[k] / (cloth.m[k] + mass);
         }
         Ok(Some(Load { masses, before }))
     }
@@ -245,15 +205,6 @@ impl Meeting {
         let Some(sheets) = &mut self.sheets else { return Ok(()) };
         sheets.move_between(&from, &to)?;
         self.done.add(&fluid.advance_among(h, sheets)?);
-        for (pending, impulse) in self.pending.iter_mut().zip(sheets.impulses()) {
-            *pending += impulse;
-        }
         Ok(())
     }
-}
-
-/// The number of the point nearest to `x` (m).
-fn nearest(points: &[World3], x: &World3) -> usize {
-    let squared = |k: usize| (points[k] - x).norm_squared();
-    (0..points.len()).min_by(|&a, &b| squared(a).total_cmp(&squared(b))).unwrap_or(0)
 }

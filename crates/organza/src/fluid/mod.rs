@@ -30,14 +30,6 @@ pub struct Water {
     pub(crate) meeting: Option<meeting::Meeting>,
 }
 
-/// The state of a fluid between two frames.
-#[derive(Clone, Debug)]
-pub(crate) struct Saved {
-    pub(crate) fluid: sph::Checkpoint,
-    /// What cloth has yet to get from it: on every vertex (N s).
-    pub(crate) pending: Vec<World3>,
-}
-
 /// A particle as recordings show it: 0 moves freely, 1 is in transition, 2 rests.
 fn state(motion: Motion) -> u8 {
     match motion {
@@ -48,20 +40,13 @@ fn state(motion: Motion) -> u8 {
 }
 
 impl Water {
-    /// The state as it is.
-    pub(crate) fn save(&self) -> Saved {
-        let pending = self.meeting.as_ref().map_or(&[][..], |meeting| meeting.pending());
-        Saved { fluid: self.fluid.checkpoint(), pending: pending.to_vec() }
-    }
-
     /// Goes back to a state.
     ///
     /// # Errors
     /// If it is none of this fluid; nothing is changed then.
-    pub(crate) fn restore(&mut self, saved: &Saved) -> Result<(), FluidError> {
-        self.fluid.restore(&saved.fluid)?;
+    pub(crate) fn restore(&mut self, saved: &sph::Checkpoint) -> Result<(), FluidError> {
+        self.fluid.restore(saved)?;
         if let Some(meeting) = &mut self.meeting {
-            meeting.set_pending(saved.pending.clone());
             meeting.report();
             meeting.forget();
         }
@@ -70,7 +55,7 @@ impl Water {
 
     /// The impulse that cloth has yet to get from the fluid (N s).
     pub fn on_its_way(&self) -> World3 {
-        self.meeting.as_ref().map_or_else(World3::zeros, |meeting| meeting.pending().iter().sum())
+        self.fluid.under_way()
     }
 
     /// Steps of cloth and fluid together in a time (s); 0 if they do not meet and no body moves.
@@ -78,17 +63,15 @@ impl Water {
         self.meeting.as_ref().map_or(0, |meeting| meeting.n_steps(time, self.fluid.settings()))
     }
 
-    /// Follows the remeshing of cloth at a time (s), whose vertices had these lasting numbers and
-    /// positions (m).
+    /// Follows the remeshing of cloth at a time (s).
     pub(crate) fn follow(
         &mut self,
-        before: (&[u64], &[World3]),
         cloth: &ClothState,
         scene: (&[Garment], &[Obstacle]),
         time: f64,
     ) {
         if let Some(meeting) = &mut self.meeting {
-            meeting.follow(&mut self.fluid, before, cloth, scene, time);
+            meeting.follow(&mut self.fluid, cloth, scene, time);
         }
     }
 

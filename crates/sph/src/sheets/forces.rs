@@ -42,8 +42,12 @@ impl Sheets {
         self.near.travel(way);
     }
 
-    /// Gives the corners what the present forces give in a time `dt` (s).
-    pub(crate) fn push(&mut self, dt: f64) {
+    /// Gives the corners what the present forces give in a time `dt` (s), and notes in `given` by which
+    /// particles, which have this `mass` (kg).
+    pub(crate) fn push(&mut self, (dt, mass): (f64, f64), by: &[Point], given: &mut [Point]) {
+        for (by, given) in by.iter().zip(given) {
+            (0..3).for_each(|c| given[c] -= mass * dt * by[c]);
+        }
         for (impulse, force) in self.impulses.iter_mut().zip(&self.forces) {
             *impulse += force * dt;
         }

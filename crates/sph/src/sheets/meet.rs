@@ -5,6 +5,7 @@ use super::forces::take_away;
 use crate::fluid::{Fluid, hardest};
 use crate::report::{Seconds, StepReport};
 use crate::settings::FluidError;
+use crate::state::State;
 use arps::Restraint;
 use nalgebra::Vector3;
 use std::time::Instant;
@@ -27,7 +28,7 @@ impl<R: Restraint> Fluid<R> {
             return Err(FluidError::OutOfRange { name: "duration", value: duration, wanted });
         }
         let clock = Instant::now();
-        self.state.by_sheets.resize(self.state.len(), [0.0; 4]);
+        self.state.meet_sheets();
         sheets.start(duration);
         sheets.list(&self.laws, &self.state.x, 0.0);
         sheets.find_touches(&self.laws, &self.state.x);
@@ -62,20 +63,44 @@ impl<R: Restraint> Fluid<R> {
         sheets.forget_particles();
     }
 
-    /// The mass of fluid near every corner of surfaces that stand still (kg): that of each particle
-    /// within the support of a surface, shared out among the corners next to it.
-    pub fn masses_near(&self, sheets: &mut Sheets) -> Vec<f64> {
+    /// What surfaces that stand still have of the fluid: the mass near every corner (kg), that of each
+    /// particle within the support of a surface shared out among the corners of the triangle closest to
+    /// it, and the impulse that it has yet to get (N s), shared out in the same way. So the impulse on a
+    /// corner over its mass is a mean of changes of velocity of particles, however the surface is meshed.
+    ///
+    /// The fluid has given these impulses then. One whose particle is near no surface any more it keeps.
+    pub fn load(&mut self, sheets: &mut Sheets) -> (Vec<f64>, Vec<Vector3<f64>>) {
+        self.state.meet_sheets();
         sheets.start(0.0);
         sheets.list(&self.laws, &self.state.x, 0.0);
-        let mut masses = vec![0.0; sheets.impulses().len()];
-        sheets.shares(&self.laws, &self.state.x, |_, corner, share| {
+        let n = sheets.impulses().len();
+        let (mut masses, mut impulses) = (vec![0.0; n], vec![Vector3::zeros(); n]);
+        let mut is_near = vec![false; self.len()];
+        let given = &self.state.given;
+        sheets.shares(&self.laws, &self.state.x, |particle, corner, share| {
+            let [x, y, z, _] = given[particle];
+            is_near[particle] = true;
             masses[corner] += self.laws.mass * share;
+            impulses[corner] += Vector3::new(x, y, z) * share;
         });
-        masses
+        let State { u, given, .. } = &mut self.state;
+        for ((u, given), is_near) in u.iter_mut().zip(given).zip(is_near) {
+            if !is_near && *given != [0.0; 4] {
+                (0..3).for_each(|c| u[c] += given[c] / self.laws.mass);
+                self.fastest = Vector3::new(u[0], u[1], u[2]).norm().max(self.fastest);
+            }
+            *given = [0.0; 4];
+        }
+        (masses, impulses)
     }
 
-    /// Carries the fluid along with the corners of surfaces of which [`Fluid::masses_near`] was just
-    /// asked, whose velocities have changed by `changes` (m/s): the sum of momenta changes by that of
+    /// The impulse that surfaces have yet to get (N s).
+    pub fn under_way(&self) -> Vector3<f64> {
+        self.state.given.iter().map(|j| Vector3::new(j[0], j[1], j[2])).sum()
+    }
+
+    /// Carries the fluid along with the corners of surfaces whose [`Fluid::load`] was just
+    /// asked for, whose velocities have changed by `changes` (m/s): the sum of momenta changes by that of
     /// the masses times the changes.
     ///
     /// # Errors
@@ -115,7 +140,7 @@ impl<R: Restraint> Fluid<R> {
         if others {
             sheets.forget_particles();
         }
-        self.state.by_sheets.resize(self.state.len(), [0.0; 4]);
+        self.state.meet_sheets();
         take_away(&mut self.state.a, &mut self.state.by_sheets);
         sheets.list(&self.laws, &self.state.x, 0.0);
         sheets.find_touches(&self.laws, &self.state.x);
@@ -135,6 +160,7 @@ impl<R: Restraint> Fluid<R> {
     pub(crate) fn leave_sheets(&mut self) {
         if !self.state.by_sheets.is_empty() {
             self.state.by_sheets.clear();
+            self.state.given.clear();
             self.scratch.changes.forget();
             self.evaluate_all(&mut Seconds::default());
             self.hardest = hardest(&self.state.a);

@@ -60,7 +60,7 @@ impl Sheets {
     /// [`Sheets::end_step`], where `moved` has their motion. Particles have this `mass` (kg).
     pub(crate) fn keep_sides(
         &mut self,
-        state: &State,
+        state: &mut State,
         moved: &mut Moved,
         (listed, domain): (&[Point], &Bounds),
         (mass, dt): (f64, f64),
@@ -80,7 +80,7 @@ impl Sheets {
             } else {
                 Some(i)
             };
-            let before = &state.x[i];
+            let before = &state.x[i].clone();
             let after = slot.map_or(before, |slot| &moved.x[slot]);
             let start = Vector3::new(before[0], before[1], before[2]);
             let way = Vector3::new(after[0], after[1], after[2]) - start;
@@ -103,7 +103,9 @@ impl Sheets {
                 let approach = (u - v).dot(&impact.normal).min(0.0);
                 u -= impact.normal * approach;
                 w -= impact.normal * (w - v).dot(&impact.normal).min(0.0);
-                self.hit(impact.name, &impact.weights, &(impact.normal * (mass * approach)));
+                let impulse = impact.normal * (mass * approach);
+                self.hit(impact.name, &impact.weights, &impulse);
+                (0..3).for_each(|c| state.given[i][c] += impulse[c]);
             }
             kept.stopped += u64::from(!path.impacts.is_empty());
             kept.squeezed += u64::from(path.is_squeezed);
