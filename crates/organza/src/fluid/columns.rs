@@ -96,6 +96,5 @@ pub(crate) fn restore(water: &mut Water, checkpoint: &Checkpoint) -> Result<(), 
         layers: u64s(LAYERS)?.to_vec(),
         incremental: incremental != 0,
     };
-    water.restore(&state)
-        .map_err(|source| RestoreError::Fluid { frame, source })
+    water.restore(&state).map_err(|source| RestoreError::Fluid { frame, source })
 }

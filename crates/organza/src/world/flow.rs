@@ -40,7 +40,8 @@ impl World {
         if let Some(prepared) = &self.prepared {
             prepared.system.settle(&mut self.cloth, step.time);
         }
-        let load = meeting.load(&mut water.fluid, &mut self.cloth, scene, step.time).map_err(told)?;
+        let load =
+            meeting.load(&mut water.fluid, &mut self.cloth, scene, step.time).map_err(told)?;
         let mut spent = clock.elapsed();
         if !self.garments.is_empty() {
             if let (Some(_), Some(prepared)) = (&load, &mut self.prepared) {
