@@ -102,7 +102,9 @@ fn what_is_carried_is_what_is_near() {
     let sum = impulses.iter().sum::<Vector3<f64>>() + fluid.momentum() - before;
     assert!((sum - under_way).norm() < 1e-11 * under_way.norm());
     assert_eq!(fluid.under_way(), Vector3::zeros());
-    assert!(impulses.iter().zip(&masses).all(|(j, m)| j.norm() <= 4.0 * m), "{impulses:?}");
+    // A corner that has hardly any mass has as little impulse.
+    let fast = fluid.settings().sound_speed;
+    assert!(impulses.iter().zip(&masses).all(|(j, m)| j.norm() <= fast * m), "{impulses:?}");
 }
 
 #[test]
