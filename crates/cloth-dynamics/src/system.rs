@@ -162,6 +162,14 @@ impl System {
         }
     }
 
+    /// Wakes all vertices, whose velocities must have been [settled](System::settle): something other
+    /// than these forces has changed velocities or masses.
+    pub fn wake_all(&mut self) {
+        if let Some(resting) = &mut self.resting {
+            resting.wake_all();
+        }
+    }
+
     /// The pattern of the forces, without contact.
     pub(crate) fn mesh_pattern(&self) -> &BlockPattern {
         &self.mesh_pattern

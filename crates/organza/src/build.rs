@@ -184,11 +184,9 @@ pub fn build(loaded: &Loaded) -> Result<Built, BuildError> {
     let density = fabrics.iter().map(|f| f.density).collect();
     let cloth = ClothState::new(mesh, positions, velocities, density).map_err(error)?;
     let obstacles = obstacle::obstacles(loaded)?;
-    let fluid = scene.fluid.as_ref().map(|fluid| fluid::water(fluid, &obstacles)).transpose();
+    let fluid = scene.fluid.as_ref();
+    let fluid = fluid.map(|fluid| fluid::water(fluid, (&cloth, &garments), &obstacles)).transpose();
     let fluid = fluid.map_err(|(key, message)| BuildError::Fluid { key, message })?;
-    if fluid.is_some() && !garments.is_empty() {
-        warnings.push("cloth and fluid pass through each other: their contact is not built".into());
-    }
     let contact = scene.contact;
     Ok(Built { cloth, fabrics, garments, handles, obstacles, fluid, contact, warnings })
 }

@@ -101,7 +101,7 @@ const FIGURES: [Figure; 31] = [
 type FluidFigure = (&'static str, fn(&FluidSummary) -> f64);
 
 /// More of them, for recordings with a fluid.
-const FLUID_FIGURES: [FluidFigure; 20] = [
+const FLUID_FIGURES: [FluidFigure; 23] = [
     ("fluid.particles", |f| f.particles as f64),
     ("fluid.active", |f| f.active as f64),
     ("fluid.transition", |f| f.transition as f64),
@@ -115,6 +115,8 @@ const FLUID_FIGURES: [FluidFigure; 20] = [
     ("fluid.listings", |f| f.listings as f64),
     ("fluid.emitted", |f| f.emitted as f64),
     ("fluid.drained", |f| f.drained as f64),
+    ("fluid.stopped", |f| f.stopped as f64),
+    ("fluid.squeezed", |f| f.squeezed as f64),
     ("fluid.density_max_kg_per_m3", |f| f.density_max_kg_per_m3),
     ("fluid.kinetic_energy_j", |f| f.kinetic_energy_j),
     ("fluid.seconds.motion", |f| f.seconds.motion),
@@ -122,6 +124,7 @@ const FLUID_FIGURES: [FluidFigure; 20] = [
     ("fluid.seconds.density", |f| f.seconds.density),
     ("fluid.seconds.force", |f| f.seconds.force),
     ("fluid.seconds.changes", |f| f.seconds.changes),
+    ("fluid.seconds.sheets", |f| f.seconds.sheets),
 ];
 
 /// A number of the restraint of a frame; zero where nothing is restrained.

@@ -56,6 +56,8 @@ pub struct FluidSeconds {
     pub force: f64,
     /// Densities and accelerations by what has changed (s).
     pub changes: f64,
+    /// Meeting cloth and bodies that move (s).
+    pub sheets: f64,
 }
 
 /// The fluid in one frame.
@@ -88,6 +90,10 @@ pub struct FluidSummary {
     pub emitted: u64,
     /// Removed particles.
     pub drained: u64,
+    /// How often a particle was stopped at cloth or a body that moves, summed over the steps.
+    pub stopped: u64,
+    /// How often these left a particle no room, so that it may have come through.
+    pub squeezed: u64,
     /// Largest density of a particle (kg/m³).
     pub density_max_kg_per_m3: f64,
     /// Kinetic energy of the momenta (J).

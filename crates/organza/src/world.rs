@@ -107,6 +107,8 @@ pub struct World {
     newton: NewtonSettings,
     solver: Box<dyn LinearSolver>,
     remeshing: Option<Remeshing>,
+    /// Mass of fluid that moves along with each vertex (kg); empty for none.
+    wet: Vec<f64>,
     /// Who may rest, if anybody may.
     restraints: Option<Restraints>,
     /// Of the last frame; the same as long as all sleeps.
@@ -182,6 +184,7 @@ impl World {
             density: wind.density,
             drag: wind.drag,
         });
+        let together = fluid.as_ref().map_or(0, |water| water.steps_among_others(scene.frame_s()));
         let mut world = World {
             frame: 0,
             remeshing: Remeshing::new(scene, &garments, &cloth.mesh),
@@ -197,13 +200,14 @@ impl World {
             fabrics: Arc::new(fabrics),
             environment: Environment { gravity: World3::from(scene.gravity), wind },
             frame_s: scene.frame_s(),
-            substeps: scene.substeps,
+            substeps: scene.substeps.max(together),
             integrator,
             newton: NewtonSettings {
                 max_iterations: scene.newton.max_iterations as usize,
                 tolerance: scene.newton.tolerance,
             },
             solver: solver.build(settings),
+            wet: Vec::new(),
             restraints: Restraints::new(scene),
             measured: None,
             prepared: None,
@@ -236,6 +240,11 @@ impl World {
         Ok(())
     }
 
+    /// Steps of the cloth in a frame: those of the scene, or more where cloth meets fluid.
+    pub fn substeps(&self) -> u32 {
+        self.substeps
+    }
+
     /// Simulated time of the last finished frame (s).
     pub fn time(&self) -> f64 {
         self.frame as f64 * self.frame_s
@@ -253,7 +262,7 @@ impl World {
         self.make_frame().inspect_err(|_| {
             (self.cloth.x, self.cloth.v, self.handles) = start;
             if let (Some(water), Some(start)) = (&mut self.fluid, &fluid) {
-                water.fluid.restore(start).expect("a state of this fluid");
+                water.restore(start).expect("a state of this fluid");
             }
             self.forget();
             self.note_tangles();
@@ -266,12 +275,21 @@ impl World {
         let (mut solve, mut seconds, mut retries) = (SolveReport::default(), Seconds::default(), 0);
         let clock = Instant::now();
         let h = self.frame_s / f64::from(self.substeps);
+        let together = self.fluid.as_ref().is_some_and(|water| water.meeting.is_some());
         let n_steps = if self.has_cloth() { self.substeps } else { 0 };
-        for k in 0..n_steps {
-            let time = self.time() + f64::from(k) * h;
-            self.step(Step { time, h }, frame, 0, &mut solve, &mut retries, &mut seconds)?;
+        for k in 0..if together { self.substeps } else { n_steps } {
+            let step = Step { time: self.time() + f64::from(k) * h, h };
+            if together {
+                self.step_together(step, frame, &mut solve, &mut retries, &mut seconds)?;
+            } else {
+                self.step(step, frame, 0, &mut solve, &mut retries, &mut seconds)?;
+            }
         }
-        let fluid = self.move_fluid(frame, &mut seconds)?;
+        let fluid = if together {
+            self.fluid_among_others()
+        } else {
+            self.move_fluid(frame, &mut seconds)?
+        };
         // Where all has slept, nothing has changed that could be measured or remeshed.
         let slept = solve.rest.slept > 0 && solve.rest.slept == solve.stages;
         let looks = self.remeshing.as_ref().is_some_and(Remeshing::looks);
@@ -325,6 +343,10 @@ impl World {
             if done.report.n_edits() > 0 {
                 self.prepared = None;
                 self.handles.follow(&before, next, &done.report.journal);
+                if let Some(water) = &mut self.fluid {
+                    let scene = (&self.garments[..], &self.obstacles[..]);
+                    water.follow(&self.cloth, scene, end);
+                }
             }
             (seconds.view, seconds.sizing) = (done.view_s, done.sizing_s);
             seconds.remesh = done.edits_s;
@@ -382,14 +404,22 @@ impl World {
         self.handles.take_hold(&self.cloth, names, step.time);
         system.accept_rise(depth >= RISE_DEPTH);
         let constraints = |time: f64| self.handles.constraints(names, time);
-        match self.integrator.advance(
+        let dry = (!self.wet.is_empty()).then(|| self.cloth.m.clone());
+        for (mass, wet) in self.cloth.m.iter_mut().zip(&self.wet) {
+            *mass += wet;
+        }
+        let done = self.integrator.advance(
             &mut self.cloth,
             system,
             self.solver.as_mut(),
             &constraints,
             &self.newton,
             step,
-        ) {
+        );
+        if let Some(dry) = dry {
+            self.cloth.m = dry;
+        }
+        match done {
             Ok(report) => {
                 solve.add(&report);
                 Ok(())
@@ -478,6 +508,9 @@ impl World {
     pub fn forget(&mut self) {
         self.solver.reset();
         self.prepared = None;
+        if let Some(meeting) = self.fluid.as_mut().and_then(|water| water.meeting.as_mut()) {
+            meeting.forget();
+        }
     }
 
     /// Names of the forces that exist.

@@ -24,8 +24,12 @@ pub struct Checkpoint {
     pub u: Vec<[f64; 4]>,
     /// Accelerations (m/s²), and 0.
     pub a: Vec<[f64; 4]>,
-    /// Densities (kg/m³).
+    /// Densities, without moving surfaces (kg/m³).
     pub density: Vec<f64>,
+    /// Accelerations (m/s²) and densities (kg/m³) by moving surfaces; empty if there are none.
+    pub by_sheets: Vec<[f64; 4]>,
+    /// Impulses that moving surfaces have yet to get (N s), and 0; empty if there are none.
+    pub given: Vec<[f64; 4]>,
     /// Positions when neighbours were last listed (m), and a number of no use.
     pub listed: Vec<[f64; 4]>,
     /// p/ρ² (Pa m⁶/kg²) and densities (kg/m³) of the particles of walls that fluid may touch.
@@ -52,6 +56,8 @@ impl<R: Restraint> Fluid<R> {
             u: state.u.clone(),
             a: state.a.clone(),
             density: state.density.clone(),
+            by_sheets: state.by_sheets.clone(),
+            given: state.given.clone(),
             listed: self.listed.clone(),
             walls: walls.collect(),
             greatest: [self.fastest, self.hardest, self.farthest],
@@ -81,6 +87,10 @@ impl<R: Restraint> Fluid<R> {
             check(what, list.len(), n)?;
         }
         check("densities", from.density.len(), n)?;
+        if !from.by_sheets.is_empty() {
+            check("accelerations by surfaces", from.by_sheets.len(), n)?;
+            check("impulses to surfaces", from.given.len(), n)?;
+        }
         check("emitters", from.layers.len(), self.emitters.len())?;
         for (k, id) in from.id.iter().enumerate() {
             for x in [&from.x[k], &from.listed[k]] {
@@ -112,6 +122,8 @@ impl<R: Restraint> Fluid<R> {
         self.state.u.clone_from(&from.u);
         self.state.a.clone_from(&from.a);
         self.state.density.clone_from(&from.density);
+        self.state.by_sheets.clone_from(&from.by_sheets);
+        self.state.given.clone_from(&from.given);
         self.listed.clone_from(&from.listed);
         // The particles were sorted by these positions, so that the order stays as it is.
         self.list_around_listed();

@@ -8,6 +8,7 @@ use crate::pair::Laws;
 use crate::report::{Seconds, StepReport};
 use crate::restraint::RestraintSettings;
 use crate::settings::{FluidError, FluidSettings};
+use crate::sheets::Sheets;
 use crate::source::{Emitter, Sink};
 use crate::state::{Spare, State};
 use crate::sweep;
@@ -149,9 +150,14 @@ impl<R: Restraint> Fluid<R> {
     /// flow take through a smoothing length, and of the time in which the largest acceleration crosses
     /// it (Monaghan1992 §10.3).
     pub fn step_bound(&self) -> f64 {
+        self.step_bound_among(0.0)
+    }
+
+    /// The same among surfaces that move at a `speed` (m/s).
+    pub(crate) fn step_bound_among(&self, speed: f64) -> f64 {
         let h = self.laws.kernel.smoothing_length();
-        let signal =
-            self.settings.sound_speed * (1.0 + 0.6 * self.settings.viscosity) + self.fastest;
+        let flow = self.fastest + speed;
+        let signal = self.settings.sound_speed * (1.0 + 0.6 * self.settings.viscosity) + flow;
         let by_sound = self.settings.courant * h / signal;
         let by_force = 0.25 * (h / self.hardest).sqrt();
         by_sound.min(by_force)
@@ -164,11 +170,22 @@ impl<R: Restraint> Fluid<R> {
     /// If the step is not positive or longer than [`Fluid::step_bound`], or if a particle leaves the
     /// domain. The fluid is then as it was.
     pub fn step(&mut self, dt: f64) -> Result<StepReport, FluidError> {
+        self.leave_sheets();
+        self.step_among(dt, None)
+    }
+
+    /// A step among surfaces, if there are any.
+    pub(crate) fn step_among(
+        &mut self,
+        dt: f64,
+        mut sheets: Option<&mut Sheets>,
+    ) -> Result<StepReport, FluidError> {
         if !(dt.is_finite() && dt > 0.0) {
             let wanted = "positive and finite";
             return Err(FluidError::OutOfRange { name: "step", value: dt, wanted });
         }
-        let bound = self.step_bound();
+        let speed = sheets.as_ref().map_or(0.0, |sheets| sheets.speed());
+        let bound = self.step_bound_among(speed);
         if dt > bound * (1.0 + 1e-12) {
             return Err(FluidError::StepTooLong { step: dt, bound });
         }
@@ -181,23 +198,30 @@ impl<R: Restraint> Fluid<R> {
         if reach > half_skin && self.scratch.changes.is_known(n) {
             let clock = Instant::now();
             self.list_in_between();
+            if let Some(sheets) = &mut sheets {
+                sheets.forget_particles();
+            }
             report.seconds.neighbours += clock.elapsed().as_secs_f64();
             report.listings += 1;
         }
         let clock = Instant::now();
-        self.kick_and_drift(dt)?;
+        self.kick_and_drift(dt, sheets.as_deref_mut(), &mut report)?;
         self.time += dt;
         report.moved =
             if self.restraint.is_some() { self.scratch.moved.movers.len() } else { n } as u64;
         let lists_are_old = self.emit_and_drain(&mut report) || self.farthest > half_skin;
-        report.seconds.motion = clock.elapsed().as_secs_f64();
+        report.seconds.motion = clock.elapsed().as_secs_f64() - report.seconds.sheets;
         let clock = Instant::now();
         if lists_are_old {
             self.list_neighbours();
             report.seconds.neighbours += clock.elapsed().as_secs_f64();
             report.listings += 1;
         }
-        if lists_are_old || !self.evaluate_changes(&mut report) {
+        if let Some(sheets) = &mut sheets {
+            self.touch_sheets(sheets, lists_are_old, &mut report.seconds);
+        }
+        let by_sheets = sheets.as_ref().map_or(&[][..], |sheets| &sheets.changed);
+        if lists_are_old || !self.evaluate_changes(by_sheets, &mut report) {
             self.evaluate_all(&mut report.seconds);
             report.sweeps = 1;
         } else {
@@ -206,6 +230,9 @@ impl<R: Restraint> Fluid<R> {
         if report.sweeps == 1 {
             let n_pairs = self.neighbours.n_pairs() as u64;
             (report.density_pairs, report.force_pairs) = (n_pairs, n_pairs);
+        }
+        if let Some(sheets) = &mut sheets {
+            self.feel_sheets(sheets, &mut report.seconds);
         }
         self.hardest = hardest(&self.state.a);
         Ok(report)
@@ -220,19 +247,35 @@ impl<R: Restraint> Fluid<R> {
             let wanted = "0 or more and finite";
             return Err(FluidError::OutOfRange { name: "duration", value: duration, wanted });
         }
+        self.leave_sheets();
+        self.make_steps(duration, None)
+    }
+
+    /// As many steps as `duration` (s) takes.
+    pub(crate) fn make_steps(
+        &mut self,
+        duration: f64,
+        mut sheets: Option<&mut Sheets>,
+    ) -> Result<StepReport, FluidError> {
         let mut report = StepReport::default();
         let mut left = duration;
         while left > 0.0 {
-            let n = (left / self.step_bound()).ceil().max(1.0);
+            let speed = sheets.as_ref().map_or(0.0, |sheets| sheets.speed());
+            let n = (left / self.step_bound_among(speed)).ceil().max(1.0);
             let dt = left / n;
-            report.add(&self.step(dt)?);
+            report.add(&self.step_among(dt, sheets.as_deref_mut())?);
             left = if n > 1.0 { left - dt } else { 0.0 };
         }
         Ok(report)
     }
 
     /// New velocities and positions.
-    fn kick_and_drift(&mut self, dt: f64) -> Result<(), FluidError> {
+    fn kick_and_drift(
+        &mut self,
+        dt: f64,
+        sheets: Option<&mut Sheets>,
+        report: &mut StepReport,
+    ) -> Result<(), FluidError> {
         let (state, moved) = (&mut self.state, &mut self.scratch.moved);
         let (listed, domain) = (&self.listed, &self.settings.domain);
         match &self.restraint {
@@ -241,6 +284,21 @@ impl<R: Restraint> Fluid<R> {
                 let now = (self.laws.mass, self.time);
                 moved.restrained(restraint, now, state, listed, domain, dt);
             }
+        }
+        if let Some(sheets) = sheets {
+            let clock = Instant::now();
+            // As far as particles and surfaces may come towards each other.
+            let ahead = (moved.fastest + sheets.speed()) * dt;
+            sheets.list(&self.laws, &state.x, ahead);
+            sheets.push((dt, self.laws.mass), &state.by_sheets, &mut state.given);
+            sheets.begin_step(dt);
+            let is_restrained = self.restraint.is_some();
+            let of_step = (self.laws.mass, dt);
+            let kept = sheets.keep_sides(state, moved, (listed, domain), of_step, is_restrained);
+            (report.stopped, report.squeezed) = (kept.stopped, kept.squeezed);
+            sheets.end_step();
+            sheets.travel((moved.fastest * dt).max(kept.longest_way) + sheets.speed() * dt);
+            report.seconds.sheets += clock.elapsed().as_secs_f64();
         }
         if let Some(Outside { at, x, u }) = &moved.outside {
             let speed = Vector3::new(u[0], u[1], u[2]).norm();
@@ -276,7 +334,7 @@ impl<R: Restraint> Fluid<R> {
     }
 
     /// Sorts the particles and lists their neighbours.
-    fn list_neighbours(&mut self) {
+    pub(crate) fn list_neighbours(&mut self) {
         self.neighbours.sort(&self.state.x, self.reach(), &mut self.scratch.order);
         self.state.sort(&self.scratch.order, &mut self.scratch.spare);
         self.listed.clone_from(&self.state.x);
@@ -308,7 +366,7 @@ impl<R: Restraint> Fluid<R> {
 
     /// Densities, pressures and accelerations by what the step has changed. Returns false if so much
     /// moves that everything has to be computed anew.
-    fn evaluate_changes(&mut self, report: &mut StepReport) -> bool {
+    fn evaluate_changes(&mut self, by_sheets: &[u32], report: &mut StepReport) -> bool {
         let Some((_, settings)) = &self.restraint else { return false };
         let n = self.state.len();
         let (moved, changes) = (&self.scratch.moved, &mut self.scratch.changes);
@@ -324,6 +382,7 @@ impl<R: Restraint> Fluid<R> {
             state: &mut self.state,
             movers: &moved.movers,
             stopped: &moved.stopped,
+            by_sheets,
             tolerance: settings.pressure_tolerance,
             gravity: self.settings.gravity.into(),
             changes,
@@ -337,13 +396,19 @@ impl<R: Restraint> Fluid<R> {
 
     /// Densities, pressures and accelerations of all particles, from nothing but their positions and
     /// effective velocities.
-    fn evaluate_all(&mut self, seconds: &mut Seconds) {
+    pub(crate) fn evaluate_all(&mut self, seconds: &mut Seconds) {
         let clock = Instant::now();
-        let State { x, w, a, density, .. } = &mut self.state;
+        let State { x, w, a, density, by_sheets, .. } = &mut self.state;
         sweep::densities(&self.laws, x, &mut self.touched, &mut self.neighbours, density, None);
         for ((x, w), &density) in x.iter_mut().zip(w.iter_mut()).zip(density.iter()) {
             x[3] = self.laws.pressure_term(density);
             w[3] = density;
+        }
+        for (((x, w), density), by) in x.iter_mut().zip(w.iter_mut()).zip(density).zip(by_sheets) {
+            if by[3] > 0.0 {
+                w[3] = *density + by[3];
+                x[3] = self.laws.pressure_term(w[3]);
+            }
         }
         for (x, &density) in self.touched.x.iter_mut().zip(&self.touched.density) {
             x[3] = self.laws.pressure_term(density);
@@ -366,7 +431,7 @@ impl<R: Restraint> Fluid<R> {
 }
 
 /// The greatest acceleration (m/s²).
-fn hardest(a: &[Point]) -> f64 {
+pub(crate) fn hardest(a: &[Point]) -> f64 {
     let squared = |a: &Point| a[0] * a[0] + a[1] * a[1] + a[2] * a[2];
     a.iter().fold(0.0, |most, a| larger(squared(a), most)).sqrt()
 }

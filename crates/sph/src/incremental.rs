@@ -14,7 +14,7 @@ use crate::lanes::{self, Four, LANES};
 use crate::neighbours::Neighbours;
 use crate::pair::{Laws, Side, transpose};
 use crate::state::State;
-use crate::sweep::{self, Marked, Stale};
+use crate::sweep::{self, Marked};
 use crate::walls::WallState;
 use pulp::{Simd, WithSimd};
 
@@ -36,6 +36,10 @@ const MOST_CHANGED: f64 = 0.4;
 /// which both ends of a pair get the difference, and accelerations. Measured.
 const DENSITY_COST: f64 = 2.0;
 const FORCE_COST: f64 = 2.5;
+/// The same for densities where so many move, as a part of all (1), that accelerations will be computed
+/// anew: these need the active neighbours, which new sums find and the update of pairs makes useless.
+const MANY_MOVERS: f64 = 0.1;
+const DENSITY_COST_OF_MANY: f64 = 5.0;
 
 /// What is remembered from step to step.
 #[derive(Clone, Debug, Default)]
@@ -81,6 +85,8 @@ pub(crate) struct Update<'a> {
     pub(crate) movers: &'a [u32],
     /// Who has stopped.
     pub(crate) stopped: &'a [u32],
+    /// To whom moving surfaces give another density.
+    pub(crate) by_sheets: &'a [u32],
     /// Changes of pressure that do not count (Pa).
     pub(crate) tolerance: f64,
     /// Acceleration of gravity (m/s²).
@@ -94,13 +100,13 @@ impl Update<'_> {
         self.changes.marks.resize(self.state.len(), 0);
         self.changes.wall_marks.resize(self.walls.x.len(), 0);
         self.mark_movers();
-        let (sums_are_cheaper, density_pairs) = match self.touched_by_movers() {
-            Some(pairs) => (true, self.densities_anew(pairs)),
-            None => (false, lanes::run(DensityChanges(&mut self))),
+        let density_pairs = match self.touched_by_movers() {
+            Some(pairs) => self.densities_anew(pairs),
+            None => lanes::run(DensityChanges(&mut self)),
         };
         self.pressures();
         let force_pairs = match self.touched_by_changes() {
-            Some(pairs) => self.accelerations_anew(pairs, sums_are_cheaper),
+            Some(pairs) => self.accelerations_anew(pairs),
             None => lanes::run(ForceChanges(&mut self)),
         };
         let changed = self.changes.changed.len() as u64;
@@ -115,6 +121,7 @@ impl Update<'_> {
             marks[i as usize] = MOVED | TURNED | TOUCHED | CHANGED;
         }
         touched.extend_from_slice(self.movers);
+        touch(self.by_sheets, TOUCHED, marks, touched);
         for &i in self.stopped {
             marks[i as usize] = TURNED | CHANGED;
         }
@@ -127,7 +134,10 @@ impl Update<'_> {
     /// together. Returns the number of their pairs.
     fn touched_by_movers(&mut self) -> Option<u64> {
         let Changes { marks, touched, wall_marks, touched_walls, .. } = &mut *self.changes;
-        let most = (DENSITY_COST * self.movers.len() as f64) as usize;
+        let n_movers = self.movers.len() as f64;
+        let are_many = n_movers > MANY_MOVERS * marks.len() as f64;
+        let cost = if are_many { DENSITY_COST_OF_MANY } else { DENSITY_COST };
+        let most = (cost * n_movers) as usize;
         let (n_before, n_walls_before) = (touched.len(), touched_walls.len());
         for &mover in self.movers {
             touch(self.neighbours.candidates(mover as usize), TOUCHED, marks, touched);
@@ -176,10 +186,9 @@ impl Update<'_> {
     }
 
     /// Computes stale accelerations anew.
-    fn accelerations_anew(&mut self, n_pairs: u64, densities_are_new: bool) -> u64 {
+    fn accelerations_anew(&mut self, n_pairs: u64) -> u64 {
         let only = Marked { marks: &self.changes.marks, bits: STALE };
-        let known = if densities_are_new { TOUCHED } else { 0 };
-        let stale = (self.gravity, Some(Stale { only, known }));
+        let stale = (self.gravity, Some(only));
         let State { x, w, a, .. } = &mut *self.state;
         sweep::accelerations(self.laws, x, w, self.walls, self.neighbours, stale, a);
         n_pairs
@@ -234,6 +243,9 @@ impl Update<'_> {
             }
             density[i] += own;
         }
+        for &i in touched.iter() {
+            self.neighbours.outdate(i as usize);
+        }
         n_pairs
     }
 
@@ -254,8 +266,8 @@ impl Update<'_> {
         }
         for &i in touched.iter() {
             let k = i as usize;
-            let (p, w, density) =
-                (&mut self.state.x[k], &mut self.state.w[k], self.state.density[k]);
+            let density = self.state.full_density(k);
+            let (p, w) = (&mut self.state.x[k], &mut self.state.w[k]);
             let term = self.laws.pressure_term(density);
             let difference = term * density * density - p[3] * w[3] * w[3];
             let known = marks[k] & CHANGED != 0;

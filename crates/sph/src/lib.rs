@@ -11,6 +11,9 @@
 //! [`StepReport`] says how many these were. [`measure`] tells how far a run is from another, [`scenes`]
 //! has scenes for that.
 //!
+//! Surfaces that move, such as cloth and bodies, are [`Sheets`]: [`Fluid::advance_among`] lets a fluid
+//! flow among them and says what it does to them. No particle comes to the other side of one.
+//!
 //! ```
 //! use arps::Speed;
 //! use nalgebra::Vector3;
@@ -50,6 +53,9 @@
 //! - Results have the same bits at any number of threads and on any processor: sums run in fixed order
 //!   over four lanes, whatever the registers hold.
 //! - A policy that restrains nothing gives the bits of no policy.
+//! - What a fluid loses to moving surfaces they get: the sum of momenta changes by rounding only.
+//! - A particle that moving surfaces leave any room stays on its side of them; if they do not, the
+//!   [`StepReport`] says so.
 //! - Forces between particles, walls included, are exactly opposite and, but for viscosity, the gradient
 //!   of [`Fluid::energy`].
 #![forbid(unsafe_code)]
@@ -68,6 +74,7 @@ mod report;
 mod restraint;
 pub mod scenes;
 mod settings;
+mod sheets;
 mod source;
 mod state;
 mod state_equation;
@@ -81,6 +88,7 @@ pub use kernel::CubicSpline;
 pub use report::{Seconds, StepReport};
 pub use restraint::RestraintSettings;
 pub use settings::{Bounds, FluidError, FluidSettings};
+pub use sheets::Sheets;
 pub use source::{Emitter, Sink};
 pub use state_equation::Tait;
 pub use view::{Energy, Particle};

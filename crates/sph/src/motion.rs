@@ -136,6 +136,36 @@ impl Moved {
         }
     }
 
+    /// Gives particle `i` another position, momentum per mass and effective velocity than was found, in
+    /// its `slot` of the movers; one that has none moves all the same.
+    pub(crate) fn correct(
+        &mut self,
+        i: usize,
+        (slot, [x, u, w]): (Option<usize>, [nalgebra::Vector3<f64>; 3]),
+        state: &State,
+        listed: &[Point],
+        domain: &Bounds,
+    ) {
+        let x = [x.x, x.y, x.z, state.x[i][3]];
+        let w = [w.x, w.y, w.z, state.w[i][3]];
+        self.u[i] = [u.x, u.y, u.z, 0.0];
+        match slot {
+            Some(slot) => (self.x[slot], self.w[slot]) = (x, w),
+            None => {
+                self.movers.push(i as u32);
+                self.x.push(x);
+                self.w.push(w);
+                self.stopped.retain(|&stopped| stopped as usize != i);
+            }
+        }
+        self.fastest = larger(u.norm(), self.fastest);
+        let way = squared(&difference(&x, &listed[i]));
+        self.farthest_squared = larger(way, self.farthest_squared);
+        if !is_inside(domain, &x) && self.outside.is_none() {
+            self.outside = Some(Outside { at: i, x, u: self.u[i] });
+        }
+    }
+
     /// Moves the particles of the state, as [`Moved::free`] has found.
     pub(crate) fn apply_free(&mut self, state: &mut State) {
         std::mem::swap(&mut self.x, &mut state.x);

@@ -138,6 +138,8 @@ pub(crate) struct Block {
     pub(crate) fluid: Lists,
     /// Particles of the walls.
     pub(crate) wall: Lists,
+    /// Whether the active candidates of each particle and their F are those of the present positions.
+    pub(crate) is_fresh: Vec<bool>,
 }
 
 /// Lists the neighbours of a block.
@@ -156,7 +158,9 @@ impl WithSimd for Listing<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Block { fluid, wall } = self.block;
+        let Block { fluid, wall, is_fresh } = self.block;
+        is_fresh.clear();
+        is_fresh.resize(self.x.len(), false);
         fluid.clear();
         wall.clear();
         for (i, p) in (self.first..).zip(self.x) {
@@ -245,6 +249,12 @@ impl Neighbours {
     #[inline(always)]
     pub(crate) fn candidates(&self, i: usize) -> &[u32] {
         self.blocks[i / BLOCK].fluid.candidates(i % BLOCK)
+    }
+
+    /// The distances of particle `i` from others have changed, but its active candidates have not.
+    #[inline(always)]
+    pub(crate) fn outdate(&mut self, i: usize) {
+        self.blocks[i / BLOCK].is_fresh[i % BLOCK] = false;
     }
 
     /// Candidates of particle `i` in the walls.

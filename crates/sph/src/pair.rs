@@ -4,6 +4,7 @@ use crate::grid::Point;
 use crate::kernel::CubicSpline;
 use crate::lanes::{Four, LANES, Number};
 use crate::settings::FluidSettings;
+use crate::sheets::Surface;
 use crate::state_equation::Tait;
 use crate::walls;
 use pulp::Simd;
@@ -17,6 +18,8 @@ pub(crate) struct Laws {
     pub(crate) mass: f64,
     /// Factor of the volumes of wall particles, see [`walls::lattice_sums`].
     pub(crate) wall_factor: f64,
+    /// What moving surfaces add to densities.
+    pub(crate) surface: Surface,
     /// 2 α h c_s of Manteaux2013 Eq. (6), between particles and with walls.
     viscous: f64,
     wall_viscous: f64,
@@ -75,11 +78,15 @@ impl Laws {
         let h = settings.spacing;
         let kernel = CubicSpline::new(h);
         let (everywhere, plate) = walls::lattice_sums(&kernel, settings.spacing);
+        // What lies behind a layer is half of all but that layer.
+        let layer = walls::layer_sum(&kernel, settings.spacing);
+        let missing = 0.5 * (1.0 - layer / everywhere);
         Laws {
             kernel,
             tait: Tait::new(settings.rest_density, settings.sound_speed),
             mass: settings.rest_density / everywhere,
             wall_factor: plate / everywhere,
+            surface: Surface::new(missing, settings.spacing, settings.rest_density),
             viscous: 2.0 * settings.viscosity * h * settings.sound_speed,
             wall_viscous: 2.0 * settings.wall_viscosity * h * settings.sound_speed,
             softening: 0.01 * h * h,
@@ -137,6 +144,14 @@ impl Laws {
         let drag = self.drag(&d, &here.w, here.density + here.density) * self.wall_viscous;
         let s = (drag - (here.pressure_term + term)) * (slope * mass);
         [s * d[0], s * d[1], s * d[2]]
+    }
+
+    /// The acceleration by a moving surface (m/s²), away from it, of a particle with P = `term` and this
+    /// density (kg/m³) at a distance (m), which grows at the rate `opening` (m/s).
+    pub(crate) fn by_surface(&self, term: f64, density: f64, distance: f64, opening: f64) -> f64 {
+        let (d, v) = ([distance, 0.0, 0.0], [opening, 0.0, 0.0]);
+        let drag = self.drag(&d, &v, density + density) * self.wall_viscous;
+        (term - drag) * self.surface.slope(distance)
     }
 
     /// v·d / ((d² + ε h²) (ρᵢ + ρⱼ)) where particles approach each other, else 0.

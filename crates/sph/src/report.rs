@@ -24,6 +24,10 @@ pub struct StepReport {
     pub emitted: u64,
     /// Removed particles.
     pub drained: u64,
+    /// How often a particle was stopped at a moving surface, summed over the steps.
+    pub stopped: u64,
+    /// How often moving surfaces left a particle no room, so that it may have come through one of them.
+    pub squeezed: u64,
     /// Wall time by stage.
     pub seconds: Seconds,
 }
@@ -41,6 +45,8 @@ pub struct Seconds {
     pub force: f64,
     /// Densities and accelerations by what has changed (s).
     pub changes: f64,
+    /// Meeting moving surfaces (s).
+    pub sheets: f64,
 }
 
 impl Seconds {
@@ -51,11 +57,12 @@ impl Seconds {
         self.density += other.density;
         self.force += other.force;
         self.changes += other.changes;
+        self.sheets += other.sheets;
     }
 
     /// All stages (s).
     pub fn total(&self) -> f64 {
-        self.motion + self.neighbours + self.density + self.force + self.changes
+        self.motion + self.neighbours + self.density + self.force + self.changes + self.sheets
     }
 }
 
@@ -72,6 +79,8 @@ impl StepReport {
         self.listings += other.listings;
         self.emitted += other.emitted;
         self.drained += other.drained;
+        self.stopped += other.stopped;
+        self.squeezed += other.squeezed;
         self.seconds.add(&other.seconds);
     }
 }

@@ -18,11 +18,27 @@ pub(crate) struct State {
     pub(crate) density: Vec<f64>,
     /// Lasting number.
     pub(crate) id: Vec<u64>,
+    /// What moving surfaces add to the acceleration (m/s²) and to the density (kg/m³); empty if there
+    /// are none.
+    pub(crate) by_sheets: Vec<Point>,
+    /// Impulse that moving surfaces have yet to get from each particle (N s), and 0; empty as well.
+    pub(crate) given: Vec<Point>,
 }
 
 impl State {
     pub(crate) fn len(&self) -> usize {
         self.id.len()
+    }
+
+    /// Density with what surfaces add (kg/m³).
+    pub(crate) fn full_density(&self, i: usize) -> f64 {
+        self.density[i] + self.by_sheets.get(i).map_or(0.0, |by| by[3])
+    }
+
+    /// Makes room for what moving surfaces do.
+    pub(crate) fn meet_sheets(&mut self) {
+        self.by_sheets.resize(self.len(), [0.0; 4]);
+        self.given.resize(self.len(), [0.0; 4]);
     }
 
     /// Adds a particle that moves freely.
@@ -32,22 +48,35 @@ impl State {
         self.u.push([v.x, v.y, v.z, 0.0]);
         self.a.push([0.0; 4]);
         self.density.push(0.0);
+        if !self.by_sheets.is_empty() {
+            self.by_sheets.push([0.0; 4]);
+            self.given.push([0.0; 4]);
+        }
         self.id.push(id);
     }
 
     /// Keeps the particles for which `keep` is true, in their order.
     pub(crate) fn retain(&mut self, keep: impl Fn(&Point) -> bool) {
         let kept: Vec<bool> = self.x.iter().map(keep).collect();
+        self.keep(&kept);
+    }
+
+    /// Keeps the particles that are marked.
+    pub(crate) fn keep(&mut self, kept: &[bool]) {
         fn filter<T>(list: &mut Vec<T>, kept: &[bool]) {
             let mut at = kept.iter();
             list.retain(|_| *at.next().expect("as many as particles"));
         }
-        filter(&mut self.x, &kept);
-        filter(&mut self.w, &kept);
-        filter(&mut self.u, &kept);
-        filter(&mut self.a, &kept);
-        filter(&mut self.density, &kept);
-        filter(&mut self.id, &kept);
+        filter(&mut self.x, kept);
+        filter(&mut self.w, kept);
+        filter(&mut self.u, kept);
+        filter(&mut self.a, kept);
+        filter(&mut self.density, kept);
+        filter(&mut self.id, kept);
+        if !self.by_sheets.is_empty() {
+            filter(&mut self.by_sheets, kept);
+            filter(&mut self.given, kept);
+        }
     }
 
     /// Puts the particles in an order, through `spare`, which holds nothing of use before or after.
@@ -58,6 +87,10 @@ impl State {
         gather(&mut self.a, order, &mut spare.points);
         gather(&mut self.density, order, &mut spare.numbers);
         gather(&mut self.id, order, &mut spare.ids);
+        if !self.by_sheets.is_empty() {
+            gather(&mut self.by_sheets, order, &mut spare.points);
+            gather(&mut self.given, order, &mut spare.points);
+        }
     }
 }
 

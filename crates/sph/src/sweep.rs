@@ -134,6 +134,7 @@ fn densities_of_block<S: Simd>(simd: S, task: Densities<'_>) {
             wall = wall + weigh(simd, kernel, four) * numbers(simd, &walls.mass, at);
         }
         *slot = laws.mass * (at_zero + fluid.total()) + wall.total();
+        block.is_fresh[k] = true;
     }
 }
 
@@ -164,17 +165,9 @@ fn numbers<S: Simd>(simd: S, list: &[f64], at: &[u32]) -> Four<S> {
     Four::new(simd, [0, 1, 2, 3].map(|l| list[at[l] as usize]))
 }
 
-/// Which accelerations to compute, if not all.
-#[derive(Clone, Copy)]
-pub(crate) struct Stale<'a> {
-    /// The particles to look at.
-    pub(crate) only: Marked<'a>,
-    /// Bits of those whose neighbours within the support are known from [`densities`].
-    pub(crate) known: u8,
-}
-
 /// Accelerations by pressure, viscosity and gravity (m/s²), into `a`.
 ///
+/// The active candidates of particles for which they are not those of these positions are found first.
 /// `x` and the positions of `walls` carry P = p/ρ², and `w`, the effective velocities, carry ρ.
 pub(crate) fn accelerations(
     laws: &Laws,
@@ -182,12 +175,12 @@ pub(crate) fn accelerations(
     w: &[Point],
     walls: &WallState,
     neighbours: &mut Neighbours,
-    (gravity, stale): ([f64; 3], Option<Stale<'_>>),
+    (gravity, only): ([f64; 3], Option<Marked<'_>>),
     a: &mut [Point],
 ) {
     par::blocks(&mut neighbours.blocks, a, BLOCK, |b, block, a| {
         let first = b * BLOCK;
-        lanes::run(Accelerations { laws, x, w, walls, first, block, gravity, stale, a });
+        lanes::run(Accelerations { laws, x, w, walls, first, block, gravity, only, a });
     });
 }
 
@@ -200,7 +193,7 @@ struct Accelerations<'a> {
     first: usize,
     block: &'a mut Block,
     gravity: [f64; 3],
-    stale: Option<Stale<'a>>,
+    only: Option<Marked<'a>>,
     a: &'a mut [Point],
 }
 
@@ -215,20 +208,19 @@ impl WithSimd for Accelerations<'_> {
 
 #[inline(always)]
 fn accelerations_of_block<S: Simd>(simd: S, task: Accelerations<'_>) {
-    let Accelerations { laws, x, w, walls, first, block, gravity, stale, a } = task;
+    let Accelerations { laws, x, w, walls, first, block, gravity, only, a } = task;
     let support_squared = laws.kernel.support() * laws.kernel.support();
     for (k, slot) in a.iter_mut().enumerate() {
-        if let Some(Stale { only, known }) = stale {
-            if !only.has(first + k) {
-                continue;
-            }
-            if only.marks[first + k] & known == 0 {
-                let p = &x[first + k];
-                let (_, r) = block.fluid.activate(k, p, x, support_squared, (first + k) as u32);
-                slopes(simd, &laws.kernel, r);
-                let (_, r) = block.wall.activate(k, p, &walls.x, support_squared, 0);
-                slopes(simd, &laws.kernel, r);
-            }
+        if only.is_some_and(|only| !only.has(first + k)) {
+            continue;
+        }
+        if !block.is_fresh[k] {
+            let p = &x[first + k];
+            let (_, r) = block.fluid.activate(k, p, x, support_squared, (first + k) as u32);
+            slopes(simd, &laws.kernel, r);
+            let (_, r) = block.wall.activate(k, p, &walls.x, support_squared, 0);
+            slopes(simd, &laws.kernel, r);
+            block.is_fresh[k] = true;
         }
         let here = Side::splat(simd, &x[first + k], &w[first + k]);
         let mut sum = [Four::splat(simd, 0.0); 3];

@@ -81,7 +81,7 @@ impl<R> Fluid<R> {
 
     fn particle(&self, i: usize) -> Particle {
         let vector = |p: &[f64; 4]| Vector3::new(p[0], p[1], p[2]);
-        let density = self.state.density[i];
+        let density = self.state.full_density(i);
         Particle {
             id: self.state.id[i],
             position: vector(&self.state.x[i]),

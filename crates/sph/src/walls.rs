@@ -223,11 +223,20 @@ impl WallState {
 /// whole half-space of fluid that it replaces.
 pub(crate) fn lattice_sums(kernel: &CubicSpline, spacing: f64) -> (f64, f64) {
     let n = (kernel.support() / spacing).ceil() as i64;
-    let layer = |z: i64| -> f64 {
-        let squared = |x: i64, y: i64| ((x * x + y * y + z * z) as f64) * spacing * spacing;
-        (-n..=n).map(|y| (-n..=n).map(|x| kernel.value(squared(x, y))).sum::<f64>()).sum()
-    };
+    let layer = |z: i64| lattice_layer(kernel, spacing, z);
     ((-n..=n).map(layer).sum(), (0..LAYERS).map(layer).sum())
+}
+
+/// Σ W over the layer of the lattice in which the middle lies.
+pub(crate) fn layer_sum(kernel: &CubicSpline, spacing: f64) -> f64 {
+    lattice_layer(kernel, spacing, 0)
+}
+
+/// Σ W over the layer of a lattice that is `z` layers off.
+fn lattice_layer(kernel: &CubicSpline, spacing: f64, z: i64) -> f64 {
+    let n = (kernel.support() / spacing).ceil() as i64;
+    let squared = |x: i64, y: i64| ((x * x + y * y + z * z) as f64) * spacing * spacing;
+    (-n..=n).map(|y| (-n..=n).map(|x| kernel.value(squared(x, y))).sum::<f64>()).sum()
 }
 
 /// Points no closer to each other than a distance, found by offering many.

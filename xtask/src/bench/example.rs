@@ -25,6 +25,15 @@ impl Example {
         Ok(Example { path: built(root, &words, name, "example")? })
     }
 
+    /// Builds the program of a crate outside of the workspace, in this folder of it.
+    ///
+    /// # Errors
+    /// If it does not build.
+    pub(super) fn apart(root: &Path, folder: &str, name: &str) -> Result<Example, Failure> {
+        let words = format!("--locked --manifest-path {folder}/Cargo.toml");
+        Ok(Example { path: built(root, &words, name, "bin")? })
+    }
+
     /// Runs it to its end.
     ///
     /// # Errors

@@ -46,6 +46,8 @@ fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
     let quick = context.options.quick;
     throughput(&dam_break, if quick { &QUICK_SIZES } else { &SIZES }, report)?;
     context.save(report)?;
+    salva(context, &dam_break, if quick { ["30", "500"] } else { ["200", "1500"] }, report)?;
+    context.save(report)?;
     let thresholds = if quick { "v_r=0.05,0.1" } else { "v_r=0.02,0.05,0.1,0.15,0.2" };
     let size = if quick { "layers=10" } else { "layers=20" };
     let options = [size, thresholds, "tau=0.02", "frame=0.5"];
@@ -55,10 +57,38 @@ fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
     let duration = if quick { "duration=1" } else { "duration=30" };
     let options = [duration, thresholds, "tau=0.05", "frame=0.5"];
     saving(&speedup, "permanent-flow", "permanent_flow", &options, report)?;
-    report.remark(
-        "sph.vs_salva is left out: salva3d is no dependency; measured apart it made 2.1e5 to 2.5e5 \
-         particle-steps per CPU second at 5,120 particles (DFSPH, single precision).",
-    );
+    Ok(())
+}
+
+/// Throughput over that of salva3d, both measured here.
+fn salva(
+    context: &Context,
+    dam_break: &Example,
+    steps: [&str; 2],
+    report: &mut Report,
+) -> Result<(), Failure> {
+    say("building the dam break of salva3d");
+    let peer = match Example::apart(&context.root, "benches/salva", "salva-dam-break") {
+        Ok(peer) => peer,
+        Err(Failure::Unable(why)) => {
+            report.remark(&format!("sph.vs_salva is left out: {why}"));
+            return Ok(());
+        }
+        Err(failure) => return Err(failure),
+    };
+    let (mut quotients, mut peers) = (Vec::new(), Vec::new());
+    for _ in 0..context.options.runs() {
+        // In turns, so that both have the same load beside them.
+        let theirs = peer.run(&["20", steps[0]])?.number("throughput")?;
+        let ours = dam_break.run(&["20", steps[1]])?.number("throughput")?;
+        quotients.push(ours / theirs);
+        peers.push(theirs);
+    }
+    let what = "Throughput over that of salva3d 0.11 (DFSPH, single precision, steps of 1 ms, one \
+                thread) at 5,120 particles, runs in turns.";
+    report.add("sph.vs_salva", Figure::median(&quotients, "1", what));
+    let what = "Particle-steps per CPU second of salva3d.";
+    report.add("sph.salva.throughput", Figure::median(&peers, "1/s", what));
     Ok(())
 }
 

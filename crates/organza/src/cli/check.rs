@@ -41,8 +41,8 @@ fn write(out: &mut String, loaded: &Loaded, world: &World) -> fmt::Result {
         scene.frames,
         scene.frames_per_second,
         f64::from(scene.frames) * scene.frame_s(),
-        scene.substeps,
-        scene.step_s(),
+        world.substeps(),
+        scene.frame_s() / f64::from(world.substeps()),
     )?;
     let parts = world.garments.iter().zip(garments(world));
     for (cloth, (part, garment)) in scene.cloths.iter().zip(parts) {

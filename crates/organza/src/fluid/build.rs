@@ -1,10 +1,13 @@
 //! From the fluid of a scene to particles between walls.
 
+use super::meeting::Meeting;
 use super::policy::{self, Policy};
 use super::{Water, settings};
+use crate::build::Garment;
 use crate::obstacle::Obstacle;
 use crate::scene;
 use crate::scene::format::{Basin, Block, Face};
+use mesh_core::ClothState;
 use nalgebra::Vector3;
 use sph::{Bounds, Emitter, Fluid, FluidError, Open, Sink, Walls, scenes};
 
@@ -12,11 +15,16 @@ use sph::{Bounds, Emitter, Fluid, FluidError, Open, Sink, Walls, scenes};
 /// a wall it would burst apart in the first step.
 const DENSEST: f64 = 1.25;
 
-/// Builds a fluid between its boxes and obstacles.
+/// Builds a fluid between its boxes and obstacles, around cloth and bodies that move: where these are
+/// at the start there is none.
 ///
 /// # Errors
 /// The key of the fluid that is wrong, and why.
-pub(crate) fn water(of: &scene::Fluid, obstacles: &[Obstacle]) -> Result<Water, (String, String)> {
+pub(crate) fn water(
+    of: &scene::Fluid,
+    (cloth, garments): (&ClothState, &[Garment]),
+    obstacles: &[Obstacle],
+) -> Result<Water, (String, String)> {
     let at = |key: &str| {
         let key = key.to_owned();
         move |error: FluidError| (key, error.to_string())
@@ -28,28 +36,44 @@ pub(crate) fn water(of: &scene::Fluid, obstacles: &[Obstacle]) -> Result<Water, 
         walls.add_box(&inside, open(basin), spacing).map_err(at(&format!("boxes[{k}]")))?;
     }
     let mut around = Vec::new();
-    for obstacle in of.obstacles.iter().map(|&k| &obstacles[k]) {
+    let mut moving = Vec::new();
+    for (k, obstacle) in of.obstacles.iter().map(|&k| (k, &obstacles[k])) {
         let name = &obstacle.name;
         let [start, end] = obstacle.times();
-        if obstacle.is_moving() || start > 0.0 || end.is_finite() {
+        if start > 0.0 || end.is_finite() {
             let what = format!(
-                "the fluid meets obstacle `{name}`, which moves or comes and goes: not supported \
-                 yet; name in `obstacles` those that it meets"
+                "the fluid meets obstacle `{name}`, which comes or goes: not supported; name in \
+                 `obstacles` those that it meets"
             );
             return Err(("obstacles".into(), what));
         }
         let corners = obstacle.positions(0.0);
+        if obstacle.is_moving() {
+            moving.push(k);
+            around.extend(box_around(&corners));
+            continue;
+        }
         let added = walls.add_mesh(&corners, &obstacle.triangles, spacing);
         added.map_err(|error| ("obstacles".into(), format!("obstacle `{name}`: {error}")))?;
         around.extend(box_around(&corners));
     }
+    if !of.cloths.is_empty() {
+        around.extend(box_around(&cloth.x));
+    }
+    let bodies: Vec<&Obstacle> = moving.iter().map(|&k| &obstacles[k]).collect();
+    let mut meeting = Meeting::new(&of.cloths, moving, garments.len(), spacing);
     let fluid_settings = settings::fluid(of, &around);
     let (mut x, mut v) = (Vec::new(), Vec::new());
     for block in &of.file.blocks {
-        x.extend(particles(block, spacing));
+        let free = particles(block, spacing).into_iter();
+        x.extend(free.filter(|x| bodies.iter().all(|body| !is_inside(body, x))));
         v.resize(x.len(), Vector3::from(block.velocity));
     }
     let mut fluid = Fluid::new(fluid_settings, walls, &x, &v).map_err(at("blocks"))?;
+    if let Some(meeting) = &mut meeting {
+        let sheets = meeting.place(cloth, garments, obstacles, 0.0).map_err(at("spacing_m"))?;
+        fluid.leave_room(sheets);
+    }
     let densest = fluid.particles().max_by(|a, b| a.density.total_cmp(&b.density));
     let limit = DENSEST * of.file.density_kg_per_m3;
     if let Some(p) = densest.filter(|p| p.density > limit) {
@@ -83,13 +107,28 @@ pub(crate) fn water(of: &scene::Fluid, obstacles: &[Obstacle]) -> Result<Water, 
             fluid.restrained(policy, settings).map_err(|e| wrong(e.to_string()))?
         }
     };
-    Ok(Water { name, fluid, is_restrained })
+    Ok(Water { name, fluid, is_restrained, meeting })
 }
 
 /// Positions of the particles of a block (m).
 fn particles(block: &Block, spacing: f64) -> Vec<Vector3<f64>> {
     let n = settings::lattice(block, spacing);
     scenes::block(n, Vector3::from(block.min), spacing, u64::from(block.seed))
+}
+
+/// Whether a body surrounds a point at the start: the solid angle of its triangles, seen from there, is
+/// that of a sphere (VanOosterom1983 Eq. (8)).
+fn is_inside(body: &Obstacle, x: &Vector3<f64>) -> bool {
+    let corners = body.positions(0.0);
+    let angle = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|k| corners[k as usize] - x);
+        let [la, lb, lc] = [a.norm(), b.norm(), c.norm()];
+        let volume = a.dot(&b.cross(&c));
+        let around = la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb;
+        2.0 * volume.atan2(around)
+    };
+    let angle: f64 = body.triangles.iter().map(angle).sum();
+    angle.abs() > 3.0 * std::f64::consts::PI
 }
 
 fn open(basin: &Basin) -> Open {

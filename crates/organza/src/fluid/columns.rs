@@ -11,6 +11,9 @@ const COUNTS: &str = "fluid counts";
 const LAYERS: &str = "fluid layers";
 const DENSITIES: &str = "fluid densities";
 const WALLS: &str = "fluid walls";
+/// Only where cloth or bodies move in the fluid.
+const SHEETS: &str = "fluid by surfaces";
+const GIVEN: &str = "fluid impulses";
 const POINTS: [&str; 5] = ["fluid x", "fluid w", "fluid u", "fluid a", "fluid listed"];
 
 /// The state of a fluid.
@@ -24,6 +27,8 @@ pub(crate) fn columns(water: &Water) -> Vec<(String, Column)> {
         u,
         a,
         density,
+        by_sheets,
+        given,
         listed,
         walls,
         greatest: [fastest, hardest, farthest],
@@ -38,6 +43,10 @@ pub(crate) fn columns(water: &Water) -> Vec<(String, Column)> {
         (DENSITIES, Column::F64(density)),
         (WALLS, Column::F64(walls.into_flattened())),
     ];
+    if water.meeting.is_some() {
+        columns.push((SHEETS, Column::F64(by_sheets.into_flattened())));
+        columns.push((GIVEN, Column::F64(given.into_flattened())));
+    }
     let points = [x, w, u, a, listed].map(|list| Column::F64(list.into_flattened()));
     columns.extend(POINTS.into_iter().zip(points));
     columns.into_iter().map(|(name, column)| (name.to_owned(), column)).collect()
@@ -68,6 +77,7 @@ pub(crate) fn restore(water: &mut Water, checkpoint: &Checkpoint) -> Result<(), 
     if !rest.is_empty() {
         return Err(bad(WALLS));
     }
+    let meets = water.meeting.is_some();
     let [x, w, u, a, listed] = POINTS;
     let state = sph::Checkpoint {
         time,
@@ -78,11 +88,13 @@ pub(crate) fn restore(water: &mut Water, checkpoint: &Checkpoint) -> Result<(), 
         u: points(u)?,
         a: points(a)?,
         density: f64s(DENSITIES)?.to_vec(),
+        by_sheets: if meets { points(SHEETS)? } else { Vec::new() },
+        given: if meets { points(GIVEN)? } else { Vec::new() },
         listed: points(listed)?,
         walls: walls.to_vec(),
         greatest: [fastest, hardest, farthest],
         layers: u64s(LAYERS)?.to_vec(),
         incremental: incremental != 0,
     };
-    water.fluid.restore(&state).map_err(|source| RestoreError::Fluid { frame, source })
+    water.restore(&state).map_err(|source| RestoreError::Fluid { frame, source })
 }

@@ -2,6 +2,7 @@
 
 mod build;
 mod columns;
+mod meeting;
 pub(crate) mod policy;
 pub(crate) mod settings;
 
@@ -9,8 +10,11 @@ pub(crate) use build::water;
 pub(crate) use columns::{columns, restore};
 pub use policy::Policy;
 
+use crate::build::Garment;
+use crate::obstacle::Obstacle;
 use crate::report::{FluidSeconds, FluidSummary};
 use arps::Motion;
+use mesh_core::{ClothState, World3};
 use sph::{Fluid, FluidError, StepReport};
 
 /// The fluid of a world.
@@ -22,6 +26,8 @@ pub struct Water {
     pub fluid: Fluid<Policy>,
     /// Whether a policy restrains its particles.
     pub is_restrained: bool,
+    /// What of cloth and bodies moves in it, if anything may.
+    pub(crate) meeting: Option<meeting::Meeting>,
 }
 
 /// A particle as recordings show it: 0 moves freely, 1 is in transition, 2 rests.
@@ -34,6 +40,41 @@ fn state(motion: Motion) -> u8 {
 }
 
 impl Water {
+    /// Goes back to a state.
+    ///
+    /// # Errors
+    /// If it is none of this fluid; nothing is changed then.
+    pub(crate) fn restore(&mut self, saved: &sph::Checkpoint) -> Result<(), FluidError> {
+        self.fluid.restore(saved)?;
+        if let Some(meeting) = &mut self.meeting {
+            meeting.report();
+            meeting.forget();
+        }
+        Ok(())
+    }
+
+    /// The impulse that cloth has yet to get from the fluid (N s).
+    pub fn on_its_way(&self) -> World3 {
+        self.fluid.under_way()
+    }
+
+    /// Steps of cloth and fluid together in a time (s); 0 if they do not meet and no body moves.
+    pub(crate) fn steps_among_others(&self, time: f64) -> u32 {
+        self.meeting.as_ref().map_or(0, |meeting| meeting.n_steps(time, self.fluid.settings()))
+    }
+
+    /// Follows the remeshing of cloth at a time (s).
+    pub(crate) fn follow(
+        &mut self,
+        cloth: &ClothState,
+        scene: (&[Garment], &[Obstacle]),
+        time: f64,
+    ) {
+        if let Some(meeting) = &mut self.meeting {
+            meeting.follow(&mut self.fluid, cloth, scene, time);
+        }
+    }
+
     /// Lets time (s) go by.
     ///
     /// # Errors
@@ -67,7 +108,7 @@ impl Water {
         self.fluid.motions().for_each(|motion| n[usize::from(state(motion))] += 1);
         let [active, transition, restrained] = n;
         let energy = self.fluid.energy();
-        let sph::Seconds { motion, neighbours, density, force, changes } = done.seconds;
+        let sph::Seconds { motion, neighbours, density, force, changes, sheets } = done.seconds;
         FluidSummary {
             particles: self.fluid.len(),
             active,
@@ -82,11 +123,13 @@ impl Water {
             listings: done.listings,
             emitted: done.emitted,
             drained: done.drained,
+            stopped: done.stopped,
+            squeezed: done.squeezed,
             density_max_kg_per_m3: self.fluid.particles().map(|p| p.density).fold(0.0, f64::max),
             kinetic_energy_j: energy.kinetic,
             internal_energy_j: energy.internal,
             potential_energy_j: energy.potential,
-            seconds: FluidSeconds { motion, neighbours, density, force, changes },
+            seconds: FluidSeconds { motion, neighbours, density, force, changes, sheets },
         }
     }
 }

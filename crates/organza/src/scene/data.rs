@@ -228,6 +228,8 @@ pub struct Fluid {
     pub name: String,
     /// Indices of the scene's obstacles that it cannot pass.
     pub obstacles: Vec<usize>,
+    /// Indices of the cloths that it cannot pass.
+    pub cloths: Vec<usize>,
     /// Acceleration of gravity (m/s²).
     pub gravity: [f64; 3],
     /// The rest, as written.

@@ -50,9 +50,13 @@ pub struct FluidFile {
     /// Basins: the fluid cannot pass their faces, from either side.
     #[serde(default)]
     pub boxes: Vec<Basin>,
-    /// Names of the obstacles that the fluid cannot pass; absent means all. They must not move.
+    /// Names of the obstacles that the fluid cannot pass; absent means all. They must not
+    /// come or go.
     #[serde(default)]
     pub obstacles: Option<Vec<String>>,
+    /// Names of the cloths that the fluid cannot pass, and which it moves; absent means all.
+    #[serde(default)]
+    pub cloths: Option<Vec<String>>,
     /// How particles that hardly move are kept still (Manteaux2013); absent means not at all.
     #[serde(default)]
     pub restraint: Option<FluidRestraint>,

@@ -1,7 +1,7 @@
 //! Checks and resolves fluids.
 
 use super::super::check::At;
-use super::super::data::{Fluid, Obstacle};
+use super::super::data::{Cloth, Fluid, Obstacle};
 use super::super::format::{
     Basin, Block, EmitterFile, FluidFile, FluidRestraint, Region, RestraintLaw, RestraintPolicy,
 };
@@ -23,7 +23,7 @@ const MAX_NAMES: f64 = u32::MAX as f64;
 /// is at most one.
 pub(super) fn resolve(
     fluids: Vec<FluidFile>,
-    obstacles: Option<&[Obstacle]>,
+    (cloths, obstacles): (Option<&[Cloth]>, Option<&[Obstacle]>),
     gravity: [f64; 3],
     duration: f64,
     at: &At<'_>,
@@ -39,24 +39,30 @@ pub(super) fn resolve(
     if let Some(restraint) = &file.restraint {
         check_restraint(restraint, &at.key("restraint"));
     }
-    let obstacles = match (&file.obstacles, obstacles) {
-        (_, None) => None,
-        (None, Some(all)) => Some((0..all.len()).collect()),
-        (Some(wanted), Some(all)) => find(wanted, all, &at.key("obstacles")),
-    };
-    let fluid = Fluid { name, obstacles: obstacles?, gravity, file };
+    let obstacles =
+        obstacles.map(|all| all.iter().map(|obstacle| obstacle.name.as_str()).collect());
+    let obstacles = find(file.obstacles.as_deref(), obstacles, "obstacle", &at.key("obstacles"));
+    let cloths = cloths.map(|all| all.iter().map(|cloth| cloth.name.as_str()).collect());
+    let cloths = find(file.cloths.as_deref(), cloths, "cloth", &at.key("cloths"));
+    let fluid = Fluid { name, obstacles: obstacles?, cloths: cloths?, gravity, file };
     check_sound(&fluid, duration, &at);
     Some(Some(fluid))
 }
 
-/// The obstacles with these names.
-fn find(wanted: &[String], all: &[Obstacle], at: &At<'_>) -> Option<Vec<usize>> {
+/// Which of the names of `all` things of a kind are `wanted`: all of them if nothing is said.
+fn find(
+    wanted: Option<&[String]>,
+    all: Option<Vec<&str>>,
+    kind: &str,
+    at: &At<'_>,
+) -> Option<Vec<usize>> {
+    let all = all?;
+    let Some(wanted) = wanted else { return Some((0..all.len()).collect()) };
     let find_one = |(i, name): (usize, &String)| {
-        let found = all.iter().position(|obstacle| obstacle.name == *name);
+        let found = all.iter().position(|known| known == name);
         if found.is_none() {
-            let known: Vec<&str> = all.iter().map(|obstacle| obstacle.name.as_str()).collect();
-            let hint = suggestion(name, &known);
-            at.index(i).complain(format!("there is no obstacle `{name}`{hint}"));
+            let hint = suggestion(name, &all);
+            at.index(i).complain(format!("there is no {kind} `{name}`{hint}"));
         }
         found
     };
