@@ -125,6 +125,11 @@ impl ConvexSolver {
         }
     }
 
+    /// Momenta at the end of the step (kg m/s) that go with what the last problem was left with: b − C d.
+    pub fn end_momenta(&self) -> &[Vector3] {
+        &self.p
+    }
+
     /// Momenta at the end of the step for displacements.
     fn momenta<B: Stiffness>(&mut self, problem: &ConvexProblem<'_, B>, d: &[Vector3]) {
         self.p.clear();

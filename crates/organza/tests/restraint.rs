@@ -65,10 +65,30 @@ fn bad_thresholds_are_told_with_their_place() {
         ("restraint: { thresholds: 'none', law: 'spline' },", "spline"),
         ("restraint: { thresholds: { speed: { rest_m_per_s: 1 } } },", "full_m_per_s"),
         ("restraint: { law: 'ramp' },", "thresholds"),
+        (
+            "restraint: { thresholds: { view: { rest_px_per_frame: 0.1, full_px_per_frame: 1 } } },",
+            "no `camera`",
+        ),
+        (
+            "camera: { position: [2, 0, 0], target: [0, 0, 0] },
+             restraint: { thresholds: { view: { rest_px_per_frame: 1, full_px_per_frame: 0.1 } } },",
+            "inverted",
+        ),
+        (
+            "camera: { position: [2, 0, 0], target: [0, 0, 0] },
+             restraint: { thresholds: { view:
+               { rest_px_per_frame: 0.1, full_px_per_frame: 1, most_m_per_s: -1 } } },",
+            "restraint.thresholds.view.most_m_per_s: must be zero or more",
+        ),
+        (
+            "camera: { position: [2, 0, 0], target: [0, 0, 0] },
+             restraint: { thresholds: { 'automatic-view': { error_px: -1 } } },",
+            "restraint.thresholds.automatic-view.error_px: must be zero or more",
+        ),
         ("restraint: true,", "restraint"),
     ] {
         let error = parsed(&sheet(keys, "")).unwrap_err();
-        assert!(error.starts_with("s.json5:1:") && error.contains(told), "{keys}\n{error}");
+        assert!(error.starts_with("s.json5:") && error.contains(told), "{keys}\n{error}");
     }
     let own = "restraint: { thresholds: { kinetic: { rest_j: 2, full_j: 1 } } }";
     let error = parsed(&sheet("", own)).unwrap_err();
@@ -187,4 +207,61 @@ fn the_table_cloth_sleeps_beside_the_ball() {
     }
     let last = reports.last().unwrap().restraint.as_ref().unwrap();
     assert!(last.resting > 60, "{last:?}");
+}
+
+/// Out of the picture a sheet rests that moves slowly; before a cut to it, it is awake again.
+#[test]
+fn cloth_wakes_before_a_cut_to_it() {
+    let view = |keys: &str| {
+        let look = |start: f64, target: &str| {
+            let at = format!("time_s: {start}, position: [0.2, -3, 0], target: {target}");
+            format!("{{ start_s: {start}, keyframes: [{{ {at} }}] }}")
+        };
+        let shots = format!("{}, {}", look(0.0, "[0, -9, 0]"), look(1.0, "[0.2, 0, 0]"));
+        let keys = format!(
+            "camera: {{ position: [0.2, -3, 0], target: [0.2, 0, 0] }}, shots: [{shots}],
+             restraint: {{ bleeding_s: 0.3, thresholds: {{ {keys} }} }},"
+        );
+        World::new(&parsed(&sheet(&keys, "")).unwrap()).unwrap()
+    };
+    let mut world =
+        view("view: { rest_px_per_frame: 0.02, full_px_per_frame: 0.1, most_m_per_s: 0.2 }");
+    let reports = run(&mut world, 40);
+    let restraint = |frame: usize| reports[frame - 1].restraint.clone().unwrap();
+    // The window is 5 frames long, and the first frame after the cut is number 25.
+    assert_eq!((restraint(20).resting, restraint(20).woken), (36, 0));
+    let woken: Vec<usize> = (21..=25).map(|frame| restraint(frame).woken).collect();
+    assert!(woken[0] > 0, "{woken:?}");
+    assert!((22..=24).all(|frame| restraint(frame).resting < 36), "{reports:?}");
+    // It is the policy that the scene chooses for an error in pixels, too.
+    let mut chosen = view("'automatic-view': { error_px: 0.8 }");
+    let reports = run(&mut chosen, 40);
+    assert!(reports[19].restraint.as_ref().unwrap().resting == 36, "{:?}", reports[19]);
+}
+
+/// Whoever stands has clothes at rest that cost nothing, and whoever dances does not.
+#[test]
+fn a_resting_crowd_dances_in_part() {
+    let sets = [
+        "crowd.count=4",
+        "crowd.columns=2",
+        "substeps=4",
+        "crowd.character.start_s=1.2",
+        "crowd.character.ease_s=0.5",
+    ];
+    let loaded = own("resting-crowd.json5", &sets);
+    assert_eq!(loaded.scene.frames, 100);
+    let mut world = World::new(&loaded).unwrap();
+    let before = run(&mut world, 30);
+    let state = |report: &FrameReport| report.restraint.clone().unwrap();
+    let last = state(&before[29]);
+    assert_eq!((last.stages_slept, last.resting), (4, world.cloth.m.len()), "{last:?}");
+    let after = run(&mut world, 15);
+    assert_eq!(world.crossings(45), None);
+    let last = state(&after[14]);
+    let rest = |garment: usize| !last.states[garment].contains(['a', 't']);
+    assert_eq!([0, 1, 2, 3].map(rest), [true, true, true, false], "{last:?}");
+    // Three in four are not touched.
+    let n = world.cloth.m.len();
+    assert!(last.untouched as f64 > 0.7 * (last.stages * n) as f64, "{last:?}");
 }

@@ -9,7 +9,7 @@
 //! moves, see [`arps::ConvexProblem`]. Its solution is a direction in which Φ falls. Where everything
 //! has full dynamics that is one linear system, the same as without restraint.
 
-use super::{Direction, Found, Inertia, Newton};
+use super::{Direction, Found, Inertia, Model, Newton};
 use crate::element::Stiffness;
 use crate::solve_report::{SolveError, SolveReport};
 use crate::solver::{BlockMatrix, LinearError, LinearSolver, clear_fixed};
@@ -52,9 +52,6 @@ impl Restrained<'_> {
 
 /// Share of the tolerance to which a convex problem is solved.
 const INNER: f64 = 0.5;
-/// Share of the error of an iteration to which it is solved, if that is more: the next iteration has
-/// other forces.
-const REDUCTION: f64 = 0.3;
 /// Share of the greatest speed by which momenta over mass may be off at rest and in transition, as long
 /// as that is less than a share of what may rest.
 const COARSE: [f64; 2] = [0.1, 0.3];
@@ -139,9 +136,7 @@ impl Newton<'_> {
         if self.is_near && slow <= 1.0 {
             return Ok(Found::Minimum);
         }
-        let error = (0..n).map(error).fold(0.0, f64::max);
-        let enough = f64::max(INNER, REDUCTION * error);
-        tolerance.iter_mut().for_each(|tolerance| *tolerance *= enough);
+        tolerance.iter_mut().for_each(|tolerance| *tolerance *= INNER);
         let operator = Operator(RefCell::new(&mut self.system.matrix));
         let problem = ConvexProblem {
             h,
@@ -162,22 +157,26 @@ impl Newton<'_> {
             Ok(())
         });
         self.report.linear_s += clock.elapsed().as_secs_f64();
-        match (found, failed) {
+        let is_telling = match (found, failed) {
             (Ok(convex), _) => {
                 self.report.rest.solves += convex.n_solves;
                 self.report.rest.unknowns += convex.n_unknowns;
                 self.directions.was_full = convex.is_full;
+                convex.converged || convex.is_full
             }
             (Err(_), _) if self.kind == Stiffness::Exact => return Ok(Found::TooExact),
             (Err(_), Some(source)) => return Err(SolveError::Linear { time, source }),
             (Err(_), None) => return Err(SolveError::NotFinite { time, h }),
-        }
+        };
+        let p = self.directions.convex.end_momenta().to_vec();
         let step: Vec<World3> = to.iter().zip(&from).map(|(to, from)| to - from).collect();
         let slope = par::sum(n, |i| {
             let kinetic = || restrained.one(i, &to[i], h) - restrained.one(i, &from[i], h);
             if moves(i) { gradient[i].dot(&step[i]) + kinetic() } else { 0.0 }
         });
-        let is_telling = self.directions.was_full;
+        let mut end = vec![World3::zeros(); n];
+        par::fill(&mut end, |i| self.inertia.reach(i, &self.x[i], &step[i]));
+        self.model = Some(Model { x: end, p });
         Ok(Found::Direction(Direction { step, slope: slope.min(0.0), is_telling, shifted }))
     }
 }

@@ -3,7 +3,7 @@
 use crate::force::Stage;
 use crate::integrator::StageStart;
 use crate::newton::restrained::Restrained;
-use crate::newton::{Inertia, minimise};
+use crate::newton::{Inertia, Minimum, minimise};
 use crate::part::Part;
 use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
 use crate::solver::LinearSolver;
@@ -15,7 +15,8 @@ use std::time::Instant;
 /// One try of a stage, in the numbers of the whole.
 pub(super) struct Try {
     pub(super) x: Vec<World3>,
-    /// Gradient on the active vertices; absent where none of them rests.
+    /// Gradient (N) on the active vertices with which momenta of the stage end; absent where none of them
+    /// rests.
     pub(super) gradient: Option<Vec<World3>>,
     pub(super) report: SolveReport,
     pub(super) pushed: Vec<u32>,
@@ -122,13 +123,19 @@ impl Local {
                 fine: whole.fine,
             }),
         };
-        let (x, mut report) = minimise(system, solver, &inertia, &self.starts, settings)?;
+        let Minimum { x, p, mut report } =
+            minimise(system, solver, &inertia, &self.starts, settings)?;
         let rests = |i: usize| !self.fixed[i] && x[i] == self.base[i];
-        let gradient = (0..x.len()).any(rests).then(|| {
-            let clock = Instant::now();
-            let gradient = system.gradient_with_contact(&x);
-            report.assembly_s += clock.elapsed().as_secs_f64();
-            gradient
+        let gradient = (0..x.len()).any(rests).then(|| match p {
+            // Forces that are linear in the displacements of the last iteration: with those at its end,
+            // what is left of it would be a change of momentum that moved nothing.
+            Some(p) => p.iter().zip(&self.p).map(|(end, start)| (start - end) / h).collect(),
+            None => {
+                let clock = Instant::now();
+                let gradient = system.gradient_with_contact(&x);
+                report.assembly_s += clock.elapsed().as_secs_f64();
+                gradient
+            }
         });
         Ok((x, gradient, report))
     }

@@ -47,8 +47,11 @@ const ROUGH: f64 = 0.05;
 /// By what momentum bleeds faster at rest: so that what is slow does not creep on for ever.
 const STATIC: f64 = 2.0;
 /// Effective speed, as a share of that up to which a vertex rests, below which bleeding puts it to rest
-/// if it gets slower still.
+/// unless it gets faster.
 const STICK: f64 = 0.2;
+/// By how much more its momentum may grow in a stage, as a share of what bleeds: forces that damping
+/// balances do not end creeping, and at rest are less than half of what that withstands.
+const GROWTH: f64 = 0.1;
 /// Change of a contact force on a sleeper that is rounding (1).
 const SAME: f64 = 1e-9;
 
@@ -107,6 +110,23 @@ impl Resting {
         self.n_active = self.active.len();
         self.patch = None;
         self.queue = WakeQueue::new();
+    }
+
+    /// Goes on with another policy from a time (s) on; sleepers with other thresholds wake at another
+    /// time. Momenta must have been [settled](Resting::settle).
+    pub(crate) fn change_policy(&mut self, policy: RestingPolicy, cloth: &ClothState, time: f64) {
+        let rate = |policy: &RestingPolicy| policy.bleeding.map(|tau| tau / STATIC);
+        for i in 0..self.active.len() {
+            let Some(&rest) = self.queue.get(i) else { continue };
+            let (mass, x) = (cloth.m[i], cloth.x[i]);
+            let p_r = policy.restraint.at(&Particle { index: i, mass, x, time }).p_r();
+            if !self.was_fixed[i] && (p_r != rest.p_r || rate(&policy) != rest.bleeding) {
+                let p = cloth.v[i] * mass;
+                let bleeding = rate(&policy);
+                self.queue.rest(i, Rest { since: time, p, p_r, bleeding, ..rest });
+            }
+        }
+        self.policy = policy;
     }
 
     /// Brings the velocities of sleepers up to a time (s).
@@ -228,7 +248,7 @@ impl Resting {
         report.contact_s += contact_s;
         rest.untouched = n - self.n_active;
         let v = self.momenta(&whole, &x, gradient.as_deref(), &mut rest);
-        self.put_to_sleep(&whole, &x, &v, gradient.as_deref(), system.contact.as_deref())?;
+        self.put_to_sleep(system, &whole, &x, &v, gradient.is_some())?;
         self.was_fixed.clone_from(&fixed);
         self.last.clone_from(&start.constraints);
         report.rest.add(&rest);
@@ -306,6 +326,12 @@ impl Resting {
         let &StageStart { x_t0, base, h, time_t0, time, .. } = whole.start;
         let target = |i: usize| whole.target(i);
         let target: Vec<World3> = (0..x_t0.len()).map(target).collect();
+        if self.n_active < x_t0.len() {
+            let sleepers: Vec<bool> = self.active.iter().map(|active| !active).collect();
+            contact.rest(Some(&sleepers));
+        } else {
+            contact.rest(None);
+        }
         contact.begin(Stage { x_t0, base, h }, [time_t0, time], &whole.cloth.m, &target);
         if self.n_active < x_t0.len() {
             let disturbed = self.disturbed(&**contact, whole.from, whole, false)?;
@@ -417,7 +443,8 @@ impl Resting {
                 if !whole.fixed[i] && !held.is_free() {
                     let conjugate = held.conjugate().expect("it was convex before the stage");
                     let p = conjugate.momentum(v);
-                    *v = self.stuck(held, &whole.p[i], p) / whole.cloth.m[i];
+                    let before = whole.start.velocity[i] * whole.cloth.m[i];
+                    *v = self.stuck(held, &before, p, h) / whole.cloth.m[i];
                 }
                 continue;
             }
@@ -436,21 +463,33 @@ impl Resting {
         v
     }
 
-    /// A momentum at the end of a stage, put to rest if it bleeds, is slow, and gets slower.
-    fn stuck(&self, held: &Held, before: &World3, p: World3) -> World3 {
+    /// A momentum at the end of a stage of length `h` (s), put to rest if it bleeds, is slow, and does not
+    /// get faster. `before` is that at its beginning, before any of it bled: with what was left then, each
+    /// force forwards would make it faster, though friction holds it.
+    fn stuck(&self, held: &Held, before: &World3, p: World3, h: f64) -> World3 {
+        let Some(tau) = self.policy.bleeding else { return p };
         let (r, p_r) = (p.norm(), held.p_r());
-        let is_slow = || held.dphi(r) < STICK * p_r && r <= before.norm();
-        if self.policy.bleeding.is_some() && is_slow() { p * (p_r / r) } else { p }
+        let most = before.norm() + GROWTH * (h / tau).min(1.0) * p_r;
+        if held.dphi(r) < STICK * p_r && r <= most { p * (p_r / r) } else { p }
+    }
+
+    /// Gradient of all but contact (N), right for the active vertices.
+    fn elastic_gradient(&self, system: &System, x: &[World3]) -> Vec<World3> {
+        let Some(Patch { part, system: own }) = &self.patch else { return system.gradient(x) };
+        let gradient = own.gradient(&part.gather(x));
+        let mut all = vec![World3::zeros(); x.len()];
+        part.vertices().iter().zip(&gradient).for_each(|(&i, g)| all[i as usize] = *g);
+        all
     }
 
     /// Lets vertices sleep that are far from all that moved, if that makes the part much smaller.
     fn put_to_sleep(
         &mut self,
+        system: &System,
         whole: &WholeStage<'_>,
         x: &[World3],
         v: &[World3],
-        gradient: Option<&[World3]>,
-        contact: Option<&dyn Contact>,
+        any_rests: bool,
     ) -> Result<(), SolveError> {
         let &StageStart { x_t0, base, time, .. } = whole.start;
         let n = x.len();
@@ -460,7 +499,11 @@ impl Resting {
             return Ok(());
         }
         // Something rests, or all is fixed.
-        let Some(gradient) = gradient else { return Ok(()) };
+        if !any_rests {
+            return Ok(());
+        }
+        let gradient = self.elastic_gradient(system, x);
+        let contact = system.contact.as_deref();
         let touching = contact.map(|contact| gradient_of(contact, x)).transpose()?;
         let mut is_wanted = vec![false; n];
         wanted.iter().for_each(|&i| is_wanted[i as usize] = true);
@@ -471,7 +514,9 @@ impl Resting {
             let (f, p, p_r) = if whole.fixed[i] {
                 (World3::zeros(), World3::zeros(), f64::INFINITY)
             } else {
-                (-gradient[i], v[i] * whole.cloth.m[i], whole.held[i].p_r())
+                let pressed = touching.as_ref().map_or_else(World3::zeros, |of| of[i]);
+                let f = -(gradient[i] + pressed);
+                (f, v[i] * whole.cloth.m[i], whole.held[i].p_r())
             };
             let bleeding = self.policy.bleeding.map(|tau| tau / STATIC);
             self.queue.rest(i, Rest { since: time, p, f, p_r, bleeding });

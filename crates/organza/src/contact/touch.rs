@@ -61,6 +61,16 @@ impl Touch {
             self.sides.add_stiffness(&self.weights, &along, to);
         }
     }
+
+    /// Lists what the contact adds to the gradient of each vertex (N).
+    pub(super) fn collect_gradient(&self, x: &[World3], to: &mut Vec<(u32, World3)>) {
+        let [_, slope, _] = penalty(self.gap(x), self.thickness);
+        if slope < 0.0 {
+            let force = self.normal * (slope * self.stiffness);
+            let cloth = (0..4).filter(|&k| self.sides.is_cloth[k]);
+            to.extend(cloth.map(|k| (self.sides.vertices[k], force * self.weights[k])));
+        }
+    }
 }
 
 /// Where a pair comes nearer than its thickness on the straight way from `x_t0` to `x_t1`; `None` if it
