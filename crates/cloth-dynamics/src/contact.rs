@@ -33,7 +33,7 @@ pub trait Contact: Send + Sync {
     /// Says before a stage begins which vertices sleep through it, if any do: they are where they were in
     /// the last stage, and only a stage that is begun anew will move them. So between sleepers, and between
     /// them and what stands still, nothing needs to be looked for; forces among them stay what they are in
-    /// [`Contact::add_system`], and their stiffness may be left out.
+    /// [`Contact::add_gradient`], and their stiffness may be left out.
     fn rest(&mut self, _sleepers: Option<&[bool]>) {}
 
     /// Pairs of vertices that share stiffness because they touch, repeats allowed.
@@ -41,6 +41,9 @@ pub trait Contact: Send + Sync {
 
     /// Energy (J) of positions at the end of the stage.
     fn energy(&self, x: &[World3]) -> f64;
+
+    /// Adds the gradient of [`Contact::energy`] (N).
+    fn add_gradient(&self, x: &[World3], gradient: &mut [World3]);
 
     /// Adds gradient (N) and positive semi-definite stiffness (N/m); the pattern has room for
     /// [`Contact::couples`].

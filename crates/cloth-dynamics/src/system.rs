@@ -198,11 +198,11 @@ impl System {
         })
     }
 
-    /// Gradient of all forces, contact among them (N). Leaves the matrix without meaning.
-    pub(crate) fn gradient_with_contact(&mut self, x: &[World3]) -> Vec<World3> {
+    /// Gradient of all forces, contact among them (N).
+    pub(crate) fn gradient_with_contact(&self, x: &[World3]) -> Vec<World3> {
         let mut gradient = self.gradient(x);
         if let Some(contact) = &self.contact {
-            contact.add_system(x, &mut gradient, &mut self.matrix);
+            contact.add_gradient(x, &mut gradient);
         }
         gradient
     }

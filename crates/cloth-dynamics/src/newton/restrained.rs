@@ -25,6 +25,8 @@ pub(crate) struct Restrained<'a> {
     pub base: &'a [World3],
     /// Momenta that the stage would have without forces (kg m/s).
     pub p: &'a [World3],
+    /// Displacements that the stage would have with the velocities at its start (m).
+    pub guess: &'a [World3],
     /// Kinetic energies; what is fixed rests for ever.
     pub conjugates: &'a [Conjugate],
     /// Error of a momentum that rests or is restrained at which the stage is converged, as a share of
@@ -56,8 +58,10 @@ const INNER: f64 = 0.5;
 /// as that is less than a share of what may rest.
 const COARSE: [f64; 2] = [0.1, 0.3];
 const ROUGH: f64 = 0.5;
-/// The most linear systems for one direction; what is left then is for the next.
-const MAX_ROUNDS: usize = 3;
+/// The most linear systems for one direction; what is left then is for the next. Few need more than ten:
+/// to begin again before the problem is solved costs more, since the forces of the next point are those of
+/// what moves the wrong way.
+const MAX_ROUNDS: usize = 20;
 /// With a greater share of movers, those that rest keep rows of the identity, and the matrix its
 /// pattern.
 const MOST: f64 = 0.7;
@@ -147,7 +151,9 @@ impl Newton<'_> {
             tolerance: &tolerance,
             max_rounds: MAX_ROUNDS,
         };
-        let mut to = from.clone();
+        // One stage resembles the next, in who moves too.
+        let is_first = self.report.iterations == 0;
+        let mut to = if is_first { restrained.guess.to_vec() } else { from.clone() };
         let (mut failed, mut shifted) = (None, false);
         let (solver, report) = (&mut *self.solver, &mut self.report);
         let found = self.directions.convex.solve(&problem, &mut to, |movers, out| {

@@ -54,6 +54,7 @@ pub(super) struct Local {
     x_t0: Vec<World3>,
     base: Vec<World3>,
     p: Vec<World3>,
+    guess: Vec<World3>,
     fixed: Vec<bool>,
     conjugates: Vec<Conjugate>,
     starts: [Vec<World3>; 2],
@@ -67,7 +68,7 @@ impl Local {
         ids: Vec<u32>,
         answers: &dyn Fn(usize) -> bool,
     ) -> Result<Local, SolveError> {
-        let &StageStart { x_t0, base, time_t0, .. } = whole.start;
+        let &StageStart { x_t0, base, velocity, h, time_t0, .. } = whole.start;
         let n = ids.len();
         let each = |of: &[World3]| ids.iter().map(|&i| of[i as usize]).collect::<Vec<_>>();
         let mut local = Local {
@@ -75,6 +76,7 @@ impl Local {
             x_t0: each(x_t0),
             base: each(base),
             p: each(whole.p),
+            guess: Vec::with_capacity(n),
             starts: [each(whole.from), Vec::with_capacity(n)],
             fixed: Vec::with_capacity(n),
             conjugates: Vec::with_capacity(n),
@@ -85,6 +87,8 @@ impl Local {
             let is_fixed = whole.fixed[i] || !answers(i);
             local.fixed.push(is_fixed);
             local.starts[1].push(if is_fixed { local.starts[0][k] } else { whole.target(i) });
+            let way = || whole.held[i].velocity(&(velocity[i] * local.mass[k])) * h;
+            local.guess.push(if is_fixed { World3::zeros() } else { way() });
             let held = if is_fixed { for_ever(local.mass[k]) } else { whole.held[i] };
             let told = |source| SolveError::Restraint { time: time_t0, source };
             if held.law() == Law::Exact && !held.is_free() && held.p_r() < f64::INFINITY {
@@ -119,6 +123,7 @@ impl Local {
             restrained: Some(Restrained {
                 base: &self.base,
                 p: &self.p,
+                guess: &self.guess,
                 conjugates: &self.conjugates,
                 fine: whole.fine,
             }),

@@ -221,7 +221,7 @@ impl Resting {
         }
         let done = loop {
             let clock = Instant::now();
-            self.begin_contact(system, &whole, &mut rest)?;
+            self.begin_contact(system, &whole, &mut rest);
             contact_s += clock.elapsed().as_secs_f64();
             let done = if self.n_active == 0 {
                 let report = SolveReport { stages: 1, ..SolveReport::default() };
@@ -235,7 +235,7 @@ impl Resting {
                 let around = self.near.around(moved.map(|i| i as u32), REACH);
                 missing.extend(around.into_iter().filter(|&i| !self.active[i as usize]));
                 if let Some(contact) = &system.contact {
-                    missing.extend(self.disturbed(&**contact, &done.x, &whole, true)?);
+                    missing.extend(self.disturbed(&**contact, &done.x, &whole, true));
                 }
             }
             if missing.is_empty() {
@@ -248,7 +248,7 @@ impl Resting {
         report.contact_s += contact_s;
         rest.untouched = n - self.n_active;
         let v = self.momenta(&whole, &x, gradient.as_deref(), &mut rest);
-        self.put_to_sleep(system, &whole, &x, &v, gradient.is_some())?;
+        self.put_to_sleep(system, &whole, &x, &v, gradient.is_some());
         self.was_fixed.clone_from(&fixed);
         self.last.clone_from(&start.constraints);
         report.rest.add(&rest);
@@ -321,8 +321,8 @@ impl Resting {
         system: &mut System,
         whole: &WholeStage<'_>,
         report: &mut RestReport,
-    ) -> Result<(), SolveError> {
-        let Some(contact) = &mut system.contact else { return Ok(()) };
+    ) {
+        let Some(contact) = &mut system.contact else { return };
         let &StageStart { x_t0, base, h, time_t0, time, .. } = whole.start;
         let target = |i: usize| whole.target(i);
         let target: Vec<World3> = (0..x_t0.len()).map(target).collect();
@@ -334,11 +334,10 @@ impl Resting {
         }
         contact.begin(Stage { x_t0, base, h }, [time_t0, time], &whole.cloth.m, &target);
         if self.n_active < x_t0.len() {
-            let disturbed = self.disturbed(&**contact, whole.from, whole, false)?;
+            let disturbed = self.disturbed(&**contact, whole.from, whole, false);
             report.woken += disturbed.len();
             self.grow(disturbed, false);
         }
-        Ok(())
     }
 
     /// Sleepers that contact wakes in this stage, if the cloth ends it at `x`. Of the others, the
@@ -349,8 +348,8 @@ impl Resting {
         x: &[World3],
         whole: &WholeStage<'_>,
         is_end: bool,
-    ) -> Result<Vec<u32>, SolveError> {
-        let gradient = gradient_of(contact, x)?;
+    ) -> Vec<u32> {
+        let gradient = gradient_of(contact, x);
         let (h, time) = (whole.start.h, whole.start.time);
         let (mut woken, mut changed) = (Vec::new(), Vec::new());
         for (i, now) in gradient.iter().enumerate() {
@@ -373,7 +372,7 @@ impl Resting {
                 self.touching[i] = gradient[i];
             }
         }
-        Ok(woken)
+        woken
     }
 
     /// Solves the stage for the active vertices.
@@ -490,21 +489,18 @@ impl Resting {
         x: &[World3],
         v: &[World3],
         any_rests: bool,
-    ) -> Result<(), SolveError> {
+    ) {
         let &StageStart { x_t0, base, time, .. } = whole.start;
         let n = x.len();
         let moved = (0..n).filter(|&i| x[i] != x_t0[i] || base[i] != x_t0[i]);
         let wanted = self.near.around(moved.map(|i| i as u32), 2 * REACH);
-        if wanted.len() as f64 >= SHRINK * self.n_active as f64 {
-            return Ok(());
-        }
-        // Something rests, or all is fixed.
-        if !any_rests {
-            return Ok(());
+        // Where nothing rests, all is fixed.
+        if wanted.len() as f64 >= SHRINK * self.n_active as f64 || !any_rests {
+            return;
         }
         let gradient = self.elastic_gradient(system, x);
         let contact = system.contact.as_deref();
-        let touching = contact.map(|contact| gradient_of(contact, x)).transpose()?;
+        let touching = contact.map(|contact| gradient_of(contact, x));
         let mut is_wanted = vec![false; n];
         wanted.iter().for_each(|&i| is_wanted[i as usize] = true);
         for i in 0..n {
@@ -527,6 +523,5 @@ impl Resting {
             }
         }
         self.patch = None;
-        Ok(())
     }
 }

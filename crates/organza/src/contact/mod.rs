@@ -311,16 +311,24 @@ impl Contact for SurfaceContact {
             + self.tangle.as_ref().map_or(0.0, |tangle| tangle.energy(x))
     }
 
+    fn add_gradient(&self, x: &[World3], gradient: &mut [World3]) {
+        self.touches.iter().for_each(|touch| touch.add_gradient(x, gradient));
+        self.slips.iter().for_each(|slip| slip.add_gradient(x, gradient));
+        self.sleep.add_gradient(gradient);
+        let drives = self.tangle.iter().flat_map(|tangle| &tangle.drives);
+        drives.for_each(|drive| drive.add_gradient(x, gradient));
+    }
+
     fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {
+        self.add_gradient(x, gradient);
         for touch in &self.touches {
-            touch.add_system(x, gradient, stiffness);
+            touch.add_stiffness(x, stiffness);
         }
         for slip in &self.slips {
-            slip.add_system(x, gradient, stiffness);
+            slip.add_stiffness(x, stiffness);
         }
-        self.sleep.add_gradient(gradient);
         for drive in self.tangle.iter().flat_map(|tangle| &tangle.drives) {
-            drive.add_system(x, gradient, stiffness);
+            drive.add_stiffness(stiffness);
         }
     }
 
