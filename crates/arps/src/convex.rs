@@ -32,6 +32,10 @@ pub struct ConvexProblem<'a, B> {
     pub stiffness: &'a B,
     /// Error of each momentum at which to stop, at least the rounding of C d (kg m/s).
     pub tolerance: &'a [f64],
+    /// Whether a particle near rest is done when its velocity is right, as [`Conjugate::mismatch`] says,
+    /// though its displacement does not give its momentum. The caller then takes that from
+    /// [`ConvexSolver::end_momenta`] where [`Conjugate::is_vague`].
+    pub by_velocity: bool,
     /// The most rounds of Newton's method.
     pub max_rounds: usize,
 }
@@ -99,7 +103,10 @@ impl ConvexSolver {
         self.momenta(problem, d);
         loop {
             (report.residual, report.converged) = self.residual(problem, d);
-            if report.converged || report.n_rounds == problem.max_rounds {
+            // Displacements that are a guess would else stay what they were, step after step, as long as that
+            // is within the tolerance.
+            let is_guess = problem.by_velocity && report.n_rounds == 0 && report.residual > 0.0;
+            if (report.converged && !is_guess) || report.n_rounds == problem.max_rounds {
                 return Ok(report);
             }
             report.n_rounds += 1;
@@ -155,7 +162,12 @@ impl ConvexSolver {
         let (mut worst, mut converged) = (0.0f64, true);
         self.size.clear();
         for i in 0..d.len() {
-            let error = problem.conjugates[i].error(&self.p[i], &d[i], problem.h);
+            let conjugate = &problem.conjugates[i];
+            let error = if problem.by_velocity {
+                conjugate.mismatch(&self.p[i], &d[i], problem.h)
+            } else {
+                conjugate.error(&self.p[i], &d[i], problem.h)
+            };
             worst = worst.max(error);
             if error <= problem.tolerance[i] {
                 continue;

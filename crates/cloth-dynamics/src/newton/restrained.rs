@@ -133,7 +133,7 @@ impl Newton<'_> {
         };
         let mut tolerance: Vec<f64> = (0..n).map(tolerance).collect();
         let error =
-            |i: usize| restrained.conjugates[i].error(&drive[i], &from[i], h) / tolerance[i];
+            |i: usize| restrained.conjugates[i].mismatch(&drive[i], &from[i], h) / tolerance[i];
         let is_slow =
             |i: usize| mass[i] * from[i].norm() < h * restrained.conjugates[i].held().p_f();
         let slow = (0..n).filter(|&i| is_slow(i)).map(error).fold(0.0, f64::max);
@@ -149,6 +149,7 @@ impl Newton<'_> {
             drive: &drive,
             stiffness: &operator,
             tolerance: &tolerance,
+            by_velocity: true,
             max_rounds: MAX_ROUNDS,
         };
         // One stage resembles the next, in who moves too.

@@ -15,9 +15,10 @@ use std::time::Instant;
 /// One try of a stage, in the numbers of the whole.
 pub(super) struct Try {
     pub(super) x: Vec<World3>,
-    /// Gradient (N) on the active vertices with which momenta of the stage end; absent where none of them
-    /// rests.
-    pub(super) gradient: Option<Vec<World3>>,
+    /// Gradient (N) on the active vertices with which momenta of the stage end.
+    pub(super) gradient: Vec<World3>,
+    /// It goes with the displacements as the convex problem of the stage wants it.
+    pub(super) is_solved: bool,
     pub(super) report: SolveReport,
     pub(super) pushed: Vec<u32>,
 }
@@ -60,7 +61,12 @@ pub(super) struct Local {
     starts: [Vec<World3>; 2],
 }
 
-type Solved = (Vec<World3>, Option<Vec<World3>>, SolveReport);
+pub(super) struct Solved {
+    pub(super) x: Vec<World3>,
+    pub(super) gradient: Vec<World3>,
+    pub(super) is_solved: bool,
+    pub(super) report: SolveReport,
+}
 
 impl Local {
     pub(super) fn new(
@@ -130,8 +136,8 @@ impl Local {
         };
         let Minimum { x, p, mut report } =
             minimise(system, solver, &inertia, &self.starts, settings)?;
-        let rests = |i: usize| !self.fixed[i] && x[i] == self.base[i];
-        let gradient = (0..x.len()).any(rests).then(|| match p {
+        let is_solved = p.is_some();
+        let gradient = match p {
             // Forces that are linear in the displacements of the last iteration: with those at its end,
             // what is left of it would be a change of momentum that moved nothing.
             Some(p) => p.iter().zip(&self.p).map(|(end, start)| (start - end) / h).collect(),
@@ -141,8 +147,8 @@ impl Local {
                 report.assembly_s += clock.elapsed().as_secs_f64();
                 gradient
             }
-        });
-        Ok((x, gradient, report))
+        };
+        Ok(Solved { x, gradient, is_solved, report })
     }
 }
 
@@ -156,16 +162,14 @@ fn for_ever(mass: f64) -> Held {
 pub(super) fn scattered(
     part: &Part,
     whole: &WholeStage<'_>,
-    (x, gradient, report): Solved,
+    solved: Solved,
     pushed: Vec<u32>,
 ) -> Try {
-    let mut all = whole.from.to_vec();
-    let mut forces = gradient.as_ref().map(|_| vec![World3::zeros(); all.len()]);
+    let mut x = whole.from.to_vec();
+    let mut gradient = vec![World3::zeros(); x.len()];
     for (k, &i) in part.vertices().iter().enumerate() {
-        all[i as usize] = x[k];
-        if let (Some(forces), Some(gradient)) = (&mut forces, &gradient) {
-            forces[i as usize] = gradient[k];
-        }
+        x[i as usize] = solved.x[k];
+        gradient[i as usize] = solved.gradient[k];
     }
-    Try { x: all, gradient: forces, report, pushed }
+    Try { x, gradient, is_solved: solved.is_solved, report: solved.report, pushed }
 }

@@ -25,7 +25,7 @@ use crate::solve_report::{NewtonSettings, RestReport, SolveError, SolveReport};
 use crate::solver::LinearSolver;
 use crate::system::{Constraints, System};
 use arps::{Held, Particle, Rest, Restraint, WakeQueue};
-use local::{Local, Try, WholeStage, scattered};
+use local::{Local, Solved, Try, WholeStage, scattered};
 use mesh_core::{ClothState, World3};
 use neighbours::Neighbours;
 use part_contact::{PartContact, gradient_of};
@@ -225,7 +225,13 @@ impl Resting {
             contact_s += clock.elapsed().as_secs_f64();
             let done = if self.n_active == 0 {
                 let report = SolveReport { stages: 1, ..SolveReport::default() };
-                Try { x: from.clone(), gradient: None, report, pushed: Vec::new() }
+                Try {
+                    x: from.clone(),
+                    gradient: vec![World3::zeros(); n],
+                    is_solved: false,
+                    report,
+                    pushed: Vec::new(),
+                }
             } else {
                 self.attempt(system, solver, settings, &whole, &mut rest)?
             };
@@ -244,11 +250,11 @@ impl Resting {
             rest.redone += 1;
             self.grow(missing, true);
         };
-        let Try { x, gradient, mut report, .. } = done;
+        let Try { x, gradient, is_solved, mut report, .. } = done;
         report.contact_s += contact_s;
         rest.untouched = n - self.n_active;
-        let v = self.momenta(&whole, &x, gradient.as_deref(), &mut rest);
-        self.put_to_sleep(system, &whole, &x, &v, gradient.is_some());
+        let v = self.momenta(&whole, &x, &gradient, is_solved, &mut rest);
+        self.put_to_sleep(system, &whole, &x, &v);
         self.was_fixed.clone_from(&fixed);
         self.last.clone_from(&start.constraints);
         report.rest.add(&rest);
@@ -390,8 +396,9 @@ impl Resting {
             system.springs = Springs { springs: whole.start.constraints.springs.clone() };
             system.begin(local.stage(whole.start.h));
             system.make_room_for_contact()?;
-            let (x, gradient, report) = local.solve(system, solver, settings, whole)?;
-            return Ok(Try { x, gradient, report, pushed: Vec::new() });
+            let Solved { x, gradient, is_solved, report } =
+                local.solve(system, solver, settings, whole)?;
+            return Ok(Try { x, gradient, is_solved, report, pushed: Vec::new() });
         }
         if self.patch.is_none() {
             report.parts += 1;
@@ -428,7 +435,8 @@ impl Resting {
         &self,
         whole: &WholeStage<'_>,
         x: &[World3],
-        gradient: Option<&[World3]>,
+        gradient: &[World3],
+        is_solved: bool,
         report: &mut RestReport,
     ) -> Vec<World3> {
         let &StageStart { base, h, time, .. } = whole.start;
@@ -441,14 +449,18 @@ impl Resting {
                 *v = d / h;
                 if !whole.fixed[i] && !held.is_free() {
                     let conjugate = held.conjugate().expect("it was convex before the stage");
-                    let p = conjugate.momentum(v);
+                    let by_force = whole.p[i] - gradient[i] * h;
+                    let p = if is_solved && conjugate.is_vague(&by_force, &d, h) {
+                        by_force
+                    } else {
+                        conjugate.momentum(v)
+                    };
                     let before = whole.start.velocity[i] * whole.cloth.m[i];
                     *v = self.stuck(held, &before, p, h) / whole.cloth.m[i];
                 }
                 continue;
             }
-            let gradient = gradient.map_or_else(World3::zeros, |gradient| gradient[i]);
-            let mut p = whole.p[i] - gradient * h;
+            let mut p = whole.p[i] - gradient[i] * h;
             let (norm, most) = (p.norm(), whole.held[i].p_r());
             let is_off = norm > (1.0 + 2.0 * whole.fine) * most;
             if is_off || (norm > most && self.policy.bleeding.is_some()) {
@@ -469,7 +481,8 @@ impl Resting {
         let Some(tau) = self.policy.bleeding else { return p };
         let (r, p_r) = (p.norm(), held.p_r());
         let most = before.norm() + GROWTH * (h / tau).min(1.0) * p_r;
-        if held.dphi(r) < STICK * p_r && r <= most { p * (p_r / r) } else { p }
+        let is_slow = held.dphi(r) < STICK * p_r;
+        if r > p_r && is_slow && r <= most { p * (p_r / r) } else { p }
     }
 
     /// Gradient of all but contact (N), right for the active vertices.
@@ -488,14 +501,12 @@ impl Resting {
         whole: &WholeStage<'_>,
         x: &[World3],
         v: &[World3],
-        any_rests: bool,
     ) {
         let &StageStart { x_t0, base, time, .. } = whole.start;
         let n = x.len();
         let moved = (0..n).filter(|&i| x[i] != x_t0[i] || base[i] != x_t0[i]);
         let wanted = self.near.around(moved.map(|i| i as u32), 2 * REACH);
-        // Where nothing rests, all is fixed.
-        if wanted.len() as f64 >= SHRINK * self.n_active as f64 || !any_rests {
+        if wanted.len() as f64 >= SHRINK * self.n_active as f64 {
             return;
         }
         let gradient = self.elastic_gradient(system, x);
