@@ -123,7 +123,11 @@ impl Conjugate {
         2.0 * self.slip(p, d, h) < self.error(p, d, h)
     }
 
+    /// Infinite for what moves though its momentum says that it rests.
     fn slip(&self, p: &Vector3, d: &Vector3, h: f64) -> f64 {
+        if self.stays(p) && *d != Vector3::zeros() {
+            return f64::INFINITY;
+        }
         (self.held.s(p) - d * (self.held.mass() / h)).norm()
     }
 

@@ -228,9 +228,10 @@ impl Eye {
         counts: &dyn Fn(u32) -> bool,
     ) -> Vec<(f64, f64)> {
         let boxes = Lookup::new(b);
-        let seen = a.mesh.triangle_ids().filter(|&t| {
-            counts(a.mesh.panels()[t.index()]) && self.sees(a, t)
-        });
+        let seen = a
+            .mesh
+            .triangle_ids()
+            .filter(|&t| counts(a.mesh.panels()[t.index()]) && self.sees(a, t));
         seen.filter_map(|t| {
             let corners = a.corners(t);
             let [u, v, w] = a.mesh.material()[t.index()];

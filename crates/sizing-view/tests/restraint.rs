@@ -126,8 +126,7 @@ fn off_screen_and_hidden_particles_rest_sooner() {
 
     let thresholds = PixelThresholds::new(Law::Ramp, 0.1, 0.5, 0.05).unwrap();
     let policy = ViewRestraint { thresholds, pixel_speeds: speeds.clone() };
-    let held =
-        |index| policy.at(&Particle { index, mass: 2.0, x: World3::zeros(), time: 0.0 });
+    let held = |index| policy.at(&Particle { index, mass: 2.0, x: World3::zeros(), time: 0.0 });
     assert!((held(0).p_r() / (2.0 * 0.1 * speeds[0]) - 1.0).abs() < 1e-12);
     // Not above what was set, and beyond the list, or where nothing is known, not at all.
     assert!((held(3).p_r() - 2.0 * 0.05).abs() < 1e-12);

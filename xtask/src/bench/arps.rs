@@ -164,8 +164,7 @@ fn crowd(context: &Context, report: &mut Report) -> Result<(), Failure> {
     let (count, frames) = if context.options.quick { (20, STAND + 10) } else { (100, 100) };
     let count = format!("crowd.count={count}");
     let restrained = simulate(context, "resting-crowd", frames, "restrained", &[&count])?;
-    let plain =
-        simulate(context, "resting-crowd", frames, "plain", &[&count, "restraint=null"])?;
+    let plain = simulate(context, "resting-crowd", frames, "plain", &[&count, "restraint=null"])?;
     let [fast, slow] = [&restrained, &plain].map(|run| run.info.each("/seconds/total"));
     let ratio = |from: usize, to: usize| {
         slow[from..to].iter().sum::<f64>() / fast[from..to].iter().sum::<f64>()
@@ -178,7 +177,8 @@ fn crowd(context: &Context, report: &mut Report) -> Result<(), Failure> {
     );
     let figure = Figure::exact(ratio(STAND, frames), "1", &note);
     report.add("arps.resting_crowd.speedup", figure);
-    let note = "The same over the whole run, of which all clothes fall into place in the first half.";
+    let note =
+        "The same over the whole run, of which all clothes fall into place in the first half.";
     report.add("arps.resting_crowd.speedup_whole", Figure::exact(ratio(0, frames), "1", note));
     let scene = context.root.join("scenes/resting-crowd.json5").display().to_string();
     let variants = [
@@ -196,7 +196,8 @@ fn crowd(context: &Context, report: &mut Report) -> Result<(), Failure> {
         ("pixel_error", 0, "with restraint and without."),
         ("chaos_floor", 1, "without restraint, and with twice the iterations."),
     ] {
-        let figure = errors.get(k).and_then(|px| Figure::exact(*px, "px", &format!("{note}: {other}")));
+        let figure =
+            errors.get(k).and_then(|px| Figure::exact(*px, "px", &format!("{note}: {other}")));
         report.add(&format!("arps.resting_crowd.{name}"), figure);
     }
     Ok(())

@@ -46,12 +46,7 @@ pub(super) fn resolve(
 }
 
 /// A cloth that a crowd wears.
-fn worn(
-    file: &ClothFile,
-    run: Run,
-    at: &At<'_>,
-    context: &mut Context<'_, '_>,
-) -> Option<Cloth> {
+fn worn(file: &ClothFile, run: Run, at: &At<'_>, context: &mut Context<'_, '_>) -> Option<Cloth> {
     if file.name.is_some() {
         at.key("name")
             .complain("cloths of a crowd have the names of their characters: leave it out");
