@@ -52,6 +52,9 @@ const STICK: f64 = 0.2;
 /// By how much more its momentum may grow in a stage, as a share of what bleeds: forces that damping
 /// balances do not end creeping, and at rest are less than half of what that withstands.
 const GROWTH: f64 = 0.1;
+/// Share of the momentum up to which a vertex rests that one is left with which is put to rest: rounding
+/// must not take it out again, where it would be held by the lesser friction of what moves.
+const INSIDE: f64 = 1.0 - 1e-12;
 /// Change of a contact force on a sleeper that is rounding (1).
 const SAME: f64 = 1e-9;
 
@@ -467,7 +470,7 @@ impl Resting {
                 // Left over by a stage that did not converge, it would be energy from nowhere; where
                 // momentum bleeds, less does too.
                 report.cut += usize::from(is_off);
-                p *= most / norm;
+                p *= INSIDE * most / norm;
             }
             *v = p / whole.cloth.m[i];
         }
@@ -482,7 +485,7 @@ impl Resting {
         let (r, p_r) = (p.norm(), held.p_r());
         let most = before.norm() + GROWTH * (h / tau).min(1.0) * p_r;
         let is_slow = held.dphi(r) < STICK * p_r;
-        if r > p_r && is_slow && r <= most { p * (p_r / r) } else { p }
+        if r > p_r && is_slow && r <= most { p * (INSIDE * p_r / r) } else { p }
     }
 
     /// Gradient of all but contact (N), right for the active vertices.
