@@ -105,7 +105,8 @@ impl ConvexSolver {
             (report.residual, report.converged) = self.residual(problem, d);
             // Displacements that are a guess would else stay what they were, step after step, as long as that
             // is within the tolerance.
-            let is_guess = problem.by_velocity && report.n_rounds == 0 && report.residual > 0.0;
+            let moves = || d.iter().any(|d| *d != Vector3::zeros());
+            let is_guess = problem.by_velocity && report.n_rounds == 0 && moves();
             if (report.converged && !is_guess) || report.n_rounds == problem.max_rounds {
                 return Ok(report);
             }
