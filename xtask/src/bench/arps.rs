@@ -185,7 +185,7 @@ fn crowd(context: &Context, report: &mut Report) -> Result<(), Failure> {
         count.clone(),
         format!("{count}&&restraint=null"),
         count.clone(),
-        format!("{count}&&restraint=null&&newton.tolerance=0.02&&newton.max_iterations=8"),
+        format!("{count}&&restraint=null&&newton.tolerance=0.01&&newton.max_iterations=12"),
     ];
     let errors = against(context, &scene, STAND + 5, &variants)?;
     let note = format!(
@@ -231,7 +231,7 @@ fn combined(context: &Context, report: &mut Report) -> Result<(), Failure> {
             "CPU seconds of the dancers without mesh sizes and restraint by view over those with {kind}, whole \
              processes over {frames} frames."
         );
-        let name = if *kind == "both" { "combined" } else { kind };
+        let name = if *kind == "both" { "combined" } else { *kind };
         let figure = Figure::exact(cpu[0] / cpu[k], "1", &note);
         report.add(&format!("arps.view.{name}_speedup"), figure);
         let note = format!(
