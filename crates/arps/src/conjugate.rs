@@ -110,6 +110,27 @@ impl Conjugate {
         }
     }
 
+    /// By how much a momentum p (kg m/s) at the end of a step of h (s) and the displacement d (m) do not go
+    /// with each other: the lesser of [`Conjugate::error`] and of the mass times what the velocities
+    /// ∂T/∂p and d/h differ by. Near rest that is by far the lesser, for there the direction of a momentum
+    /// hangs on a velocity of nearly nothing.
+    pub fn mismatch(&self, p: &Vector3, d: &Vector3, h: f64) -> f64 {
+        self.error(p, d, h).min(self.slip(p, d, h))
+    }
+
+    /// True if a displacement says less about the momentum than p does: see [`Conjugate::mismatch`].
+    pub fn is_vague(&self, p: &Vector3, d: &Vector3, h: f64) -> bool {
+        2.0 * self.slip(p, d, h) < self.error(p, d, h)
+    }
+
+    /// Infinite for what moves though its momentum says that it rests.
+    fn slip(&self, p: &Vector3, d: &Vector3, h: f64) -> f64 {
+        if self.stays(p) && *d != Vector3::zeros() {
+            return f64::INFINITY;
+        }
+        (self.held.s(p) - d * (self.held.mass() / h)).norm()
+    }
+
     /// True if a particle with this momentum at the end of the step stays where it is: the kink.
     #[inline]
     pub fn stays(&self, p: &Vector3) -> bool {

@@ -32,6 +32,10 @@ pub struct ConvexProblem<'a, B> {
     pub stiffness: &'a B,
     /// Error of each momentum at which to stop, at least the rounding of C d (kg m/s).
     pub tolerance: &'a [f64],
+    /// Whether a particle near rest is done when its velocity is right, as [`Conjugate::mismatch`] says,
+    /// though its displacement does not give its momentum. The caller then takes that from
+    /// [`ConvexSolver::end_momenta`] where [`Conjugate::is_vague`].
+    pub by_velocity: bool,
     /// The most rounds of Newton's method.
     pub max_rounds: usize,
 }
@@ -99,7 +103,11 @@ impl ConvexSolver {
         self.momenta(problem, d);
         loop {
             (report.residual, report.converged) = self.residual(problem, d);
-            if report.converged || report.n_rounds == problem.max_rounds {
+            // Displacements that are a guess would else stay what they were, step after step, as long as that
+            // is within the tolerance.
+            let moves = || d.iter().any(|d| *d != Vector3::zeros());
+            let is_guess = problem.by_velocity && report.n_rounds == 0 && moves();
+            if (report.converged && !is_guess) || report.n_rounds == problem.max_rounds {
                 return Ok(report);
             }
             report.n_rounds += 1;
@@ -123,6 +131,11 @@ impl ConvexSolver {
             }
             self.advance(problem, d, report.n_rounds <= UPDATED_ROUNDS);
         }
+    }
+
+    /// Momenta at the end of the step (kg m/s) that go with what the last problem was left with: b − C d.
+    pub fn end_momenta(&self) -> &[Vector3] {
+        &self.p
     }
 
     /// Momenta at the end of the step for displacements.
@@ -150,7 +163,12 @@ impl ConvexSolver {
         let (mut worst, mut converged) = (0.0f64, true);
         self.size.clear();
         for i in 0..d.len() {
-            let error = problem.conjugates[i].error(&self.p[i], &d[i], problem.h);
+            let conjugate = &problem.conjugates[i];
+            let error = if problem.by_velocity {
+                conjugate.mismatch(&self.p[i], &d[i], problem.h)
+            } else {
+                conjugate.error(&self.p[i], &d[i], problem.h)
+            };
             worst = worst.max(error);
             if error <= problem.tolerance[i] {
                 continue;

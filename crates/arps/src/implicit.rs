@@ -155,6 +155,7 @@ impl<R: Restraint> Implicit<R> {
                 drive: &self.drive,
                 stiffness: &self.stiffness,
                 tolerance: &self.tolerances,
+                by_velocity: false,
                 max_rounds: MAX_ROUNDS,
             };
             if report.n_newton == 1 {

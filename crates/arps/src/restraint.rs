@@ -32,8 +32,8 @@ pub trait Restraint: Send + Sync {
     /// The restrained kinetic energy of one particle.
     fn at(&self, particle: &Particle) -> Held;
 
-    /// True if the answer depends on nothing but the mass: then whoever rests need not be asked about
-    /// again.
+    /// True if the answer depends on nothing that changes, neither on position nor on time: then whoever
+    /// rests need not be asked about again.
     fn is_steady(&self) -> bool {
         false
     }

@@ -129,7 +129,7 @@ proptest! {
         let (origin, tolerance) = (vec![Vector3::zeros(); n], vec![1e-13; n]);
         let problem = ConvexProblem {
             h, conjugates: &conjugates, origin: &origin, drive: &start.p, stiffness: &stiffness,
-            tolerance: &tolerance, max_rounds: 60,
+            tolerance: &tolerance, by_velocity: false, max_rounds: 60,
         };
         let mut d = vec![Vector3::zeros(); n];
         let report = ConvexSolver::default().solve(&problem, &mut d, dense).unwrap();
@@ -197,11 +197,11 @@ proptest! {
         let (origin, tolerance) = (vec![Vector3::zeros(); n], vec![1e-12; n]);
         let problem = ConvexProblem {
             h: 0.02, conjugates: &conjugates, origin: &origin, drive: &start.p, stiffness: &stiffness,
-            tolerance: &tolerance, max_rounds: 60,
+            tolerance: &tolerance, by_velocity: false, max_rounds: 60,
         };
         let dense_problem = ConvexProblem {
             h: 0.02, conjugates: &conjugates, origin: &origin, drive: &start.p, stiffness: &full,
-            tolerance: &tolerance, max_rounds: 60,
+            tolerance: &tolerance, by_velocity: false, max_rounds: 60,
         };
         let mut solver = ConvexSolver::default();
         let mut d = [(); 3].map(|()| vec![Vector3::zeros(); n]);

@@ -30,11 +30,20 @@ pub trait Contact: Send + Sync {
     /// those of the vertices (kg).
     fn begin(&mut self, stage: Stage<'_>, times: [f64; 2], mass: &[f64], target: &[World3]);
 
+    /// Says before a stage begins which vertices sleep through it, if any do: they are where they were in
+    /// the last stage, and only a stage that is begun anew will move them. So between sleepers, and between
+    /// them and what stands still, nothing needs to be looked for; forces among them stay what they are in
+    /// [`Contact::add_gradient`], and their stiffness may be left out.
+    fn rest(&mut self, _sleepers: Option<&[bool]>) {}
+
     /// Pairs of vertices that share stiffness because they touch, repeats allowed.
     fn couples(&self) -> Vec<[u32; 2]>;
 
     /// Energy (J) of positions at the end of the stage.
     fn energy(&self, x: &[World3]) -> f64;
+
+    /// Adds the gradient of [`Contact::energy`] (N).
+    fn add_gradient(&self, x: &[World3], gradient: &mut [World3]);
 
     /// Adds gradient (N) and positive semi-definite stiffness (N/m); the pattern has room for
     /// [`Contact::couples`].

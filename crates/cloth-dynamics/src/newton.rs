@@ -132,6 +132,26 @@ struct Newton<'a> {
     is_near: bool,
     /// No descent is left within rounding.
     stuck: bool,
+    /// Where the last direction of a restrained stage led to, in full.
+    model: Option<Model>,
+}
+
+/// A minimum with V made quadratic, under restraint.
+struct Model {
+    /// Positions (m).
+    x: Vec<World3>,
+    /// Momenta with the forces of that V (kg m/s).
+    p: Vec<World3>,
+}
+
+/// What a stage was solved to.
+pub(crate) struct Minimum {
+    /// Positions (m).
+    pub x: Vec<World3>,
+    /// Under restraint, the momenta (kg m/s) that go with the forces of the last iteration, linear in
+    /// the displacements, if its step was the last one and made in full.
+    pub p: Option<Vec<World3>>,
+    pub report: SolveReport,
 }
 
 /// Minimises the incremental potential from the better of two starts: at rest where the step begins,
@@ -148,7 +168,7 @@ pub(crate) fn minimise(
     inertia: &Inertia<'_>,
     starts: &[Vec<World3>; 2],
     settings: &NewtonSettings,
-) -> Result<(Vec<World3>, SolveReport), SolveError> {
+) -> Result<Minimum, SolveError> {
     let clock = Instant::now();
     let (x, phi) = choose_start(system, inertia, starts)?;
     let energy_s = clock.elapsed().as_secs_f64();
@@ -162,6 +182,7 @@ pub(crate) fn minimise(
         converged: false,
         is_near: false,
         stuck: false,
+        model: None,
         system,
         solver,
         inertia,
@@ -190,7 +211,9 @@ pub(crate) fn minimise(
     }
     newton.report.unconverged = usize::from(!newton.converged);
     newton.secure()?;
-    Ok((newton.x, newton.report))
+    let Newton { x, model, report, .. } = newton;
+    let p = model.filter(|model| model.x == x).map(|model| model.p);
+    Ok(Minimum { x, p, report })
 }
 
 /// The start and its potential.

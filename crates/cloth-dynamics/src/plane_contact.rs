@@ -63,12 +63,21 @@ impl Contact for PlaneContact {
         })
     }
 
+    fn add_gradient(&self, x: &[World3], gradient: &mut [World3]) {
+        for (i, x) in x.iter().enumerate() {
+            let [_, slope, _] = penalty(self.gap(x), self.thickness);
+            if slope < 0.0 {
+                gradient[i] += self.normal * (slope * STIFFNESS * self.inertia[i]);
+            }
+        }
+    }
+
     fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {
+        self.add_gradient(x, gradient);
         for (i, x) in x.iter().enumerate() {
             let [_, slope, curvature] = penalty(self.gap(x), self.thickness);
             if slope < 0.0 {
                 let k = STIFFNESS * self.inertia[i];
-                gradient[i] += self.normal * (slope * k);
                 *stiffness.diagonal_mut(i) +=
                     self.normal * self.normal.transpose() * (curvature * k);
             }

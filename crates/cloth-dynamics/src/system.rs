@@ -154,6 +154,16 @@ impl System {
         self.resting = Some(Box::new(Resting::new(policy, self)));
     }
 
+    /// Puts another policy, of the same vertices, in the place of the one in use at a time (s), between
+    /// steps: who sleeps sleeps on if it may.
+    pub fn change_restraint(&mut self, policy: RestingPolicy, cloth: &mut ClothState, time: f64) {
+        self.settle(cloth, time);
+        match &mut self.resting {
+            Some(resting) => resting.change_policy(policy, cloth, time),
+            None => self.set_restraint(policy),
+        }
+    }
+
     /// Brings the velocities of vertices that sleep up to a time (s): between steps they are those at
     /// the time at which the vertex went to sleep.
     pub fn settle(&self, cloth: &mut ClothState, time: f64) {
@@ -196,11 +206,11 @@ impl System {
         })
     }
 
-    /// Gradient of all forces, contact among them (N). Leaves the matrix without meaning.
-    pub(crate) fn gradient_with_contact(&mut self, x: &[World3]) -> Vec<World3> {
+    /// Gradient of all forces, contact among them (N).
+    pub(crate) fn gradient_with_contact(&self, x: &[World3]) -> Vec<World3> {
         let mut gradient = self.gradient(x);
         if let Some(contact) = &self.contact {
-            contact.add_system(x, &mut gradient, &mut self.matrix);
+            contact.add_gradient(x, &mut gradient);
         }
         gradient
     }

@@ -328,3 +328,29 @@ fn thresholds_at_their_extremes() {
         assert_eq!(run.cloth, before);
     }
 }
+
+/// A force that friction at rest withstands, but not that in motion, makes damped cloth creep. It ends
+/// that, from above and from below.
+#[test]
+fn creeping_cloth_comes_to_rest() {
+    let (tau, rate) = (0.5, 10.0);
+    // Rounding differs from one speed to the other.
+    let speeds = [0.01, 0.0113, 0.0131, 0.0151, 0.0171];
+    for (v_r, start) in speeds.into_iter().flat_map(|v_r| [(v_r, 1.02), (v_r, 1.3)]) {
+        let damping = Damping { mass: rate, stiffness: 0.0 };
+        let mut run = Run::new(3, Some(speed(v_r, Some(tau))), damping);
+        let environment =
+            Environment { gravity: World3::new(1.5 * v_r / tau, 0.0, 0.0), ..gravity() };
+        let own = Fabric { damping, ..fabric(1000.0, 1e-4, 0.2) };
+        run.system = System::new(&run.cloth, &Arc::new(vec![own]), &environment, 0.01).unwrap();
+        run.system.set_restraint(speed(v_r, Some(tau)));
+        run.held = Constraints::default();
+        run.cloth.v.fill(World3::new(start * v_r, 0.0, 0.0));
+        (0..200).for_each(|_| {
+            run.step(&mut ImplicitEuler, 0.01);
+        });
+        let before = run.cloth.x.clone();
+        let report = run.step(&mut ImplicitEuler, 0.01);
+        assert_eq!((report.rest.slept, &run.cloth.x), (1, &before), "from {start} {v_r}");
+    }
+}

@@ -191,6 +191,48 @@ impl Bvh {
         })
     }
 
+    /// All pairs `[g, h]`, `g ≤ h`, of groups whose boxes overlap and of which one at least is `awake`.
+    pub(crate) fn self_groups_awake(&self, awake: &[bool]) -> Vec<[u32; 2]> {
+        par::collect(self.n_groups(), |group, pairs| {
+            if awake[group] {
+                let with = self.around(group);
+                self.traverse(&with, 0, |other| {
+                    if other >= group || !awake[other] {
+                        pairs.push([group.min(other) as u32, group.max(other) as u32]);
+                    }
+                });
+            }
+        })
+    }
+
+    /// The same between this tree and another one, with the marks of both.
+    pub(crate) fn groups_with_awake(
+        &self,
+        other: &Bvh,
+        [own, theirs]: [&[bool]; 2],
+    ) -> Vec<[u32; 2]> {
+        if self.is_empty() || other.is_empty() {
+            return Vec::new();
+        }
+        let mut pairs = par::collect(self.n_groups(), |group, pairs| {
+            if own[group] {
+                let with = self.around(group);
+                other.traverse(&with, 0, |there| pairs.push([group as u32, there as u32]));
+            }
+        });
+        pairs.extend(par::collect(other.n_groups(), |there, pairs| {
+            if theirs[there] {
+                let with = other.around(there);
+                self.traverse(&with, 0, |group| {
+                    if !own[group] {
+                        pairs.push([group as u32, there as u32]);
+                    }
+                });
+            }
+        }));
+        pairs
+    }
+
     /// All pairs of a group of this tree and a group of the other one whose boxes overlap.
     pub(crate) fn groups_with(&self, other: &Bvh) -> Vec<[u32; 2]> {
         if other.is_empty() {

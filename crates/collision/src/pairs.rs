@@ -81,6 +81,7 @@ pub struct Body<'a> {
     x_t0: &'a [World3],
     x_t1: &'a [World3],
     radius: &'a (dyn Fn(u32) -> f64 + Sync),
+    awake: Option<&'a [bool]>,
 }
 
 impl<'a> Body<'a> {
@@ -106,7 +107,30 @@ impl<'a> Body<'a> {
     ) -> Body<'a> {
         let n = surface.n_vertices();
         assert_eq!((x_t0.len(), x_t1.len()), (n, n), "positions and vertices");
-        Body { surface, x_t0, x_t1, radius }
+        Body { surface, x_t0, x_t1, radius, awake: None }
+    }
+
+    /// The same body, of whose vertices only some are awake: the searches of [`swept`](crate::swept) for
+    /// what may come near leave pairs out of which no vertex is, and cost next to nothing for them.
+    ///
+    /// # Panics
+    /// If there is not one mark for each vertex.
+    #[must_use]
+    pub fn awake(self, awake: &'a [bool]) -> Body<'a> {
+        assert_eq!(awake.len(), self.surface.n_vertices(), "marks and vertices");
+        Body { awake: Some(awake), ..self }
+    }
+
+    /// Whether all of its vertices are awake.
+    #[inline]
+    pub(crate) fn is_all_awake(&self) -> bool {
+        self.awake.is_none()
+    }
+
+    /// Whether any of some vertices is awake.
+    #[inline]
+    pub(crate) fn has_awake(&self, vertices: &[u32]) -> bool {
+        self.awake.is_none_or(|awake| vertices.iter().any(|&v| awake[v as usize]))
     }
 
     /// The surface.

@@ -228,6 +228,36 @@ proptest! {
         let (a, b) = (moving(&a), moving(&other));
         check(&a.between(&b), &a, &b, false)?;
     }
+
+    /// Of pairs with a vertex that is awake none is missing, and no other is there.
+    #[test]
+    fn what_sleeps_is_left_out(a in shape(), other in shape(), share in 0u64..5) {
+        let (a, b) = (moving(&a), moving(&Shape { size: a.size, far: a.far, ..other }));
+        // Runs of vertices, so that whole groups sleep.
+        let marks = |of: &Moving, seed: u64| -> Vec<bool> {
+            let mark = |v: u64| (v / 7 + seed) % 5 < share;
+            (0..of.surface.n_vertices() as u64).map(mark).collect()
+        };
+        let (awake, awake_b) = (marks(&a, 0), marks(&b, 3));
+        let radius = |v: u32| a.radii[v as usize];
+        let radius_b = |v: u32| b.radii[v as usize];
+        let body = Body::moving(&a.surface, &a.x[0], &a.x[1], &radius);
+        let other = Body::moving(&b.surface, &b.x[0], &b.x[1], &radius_b);
+        let any = |_: &[u32; 4], _: PairKind| f64::INFINITY;
+        let has_awake = |pair: &Pair, marks: [&[bool]; 2], surface: &Surface| {
+            let vertices = pair.vertices(&a.surface, surface);
+            (0..4).any(|k| marks[usize::from(!pair.of_first()[k])][vertices[k] as usize])
+        };
+        let mut within = a.within();
+        within.retain(|(pair, _)| has_awake(pair, [&awake, &awake], &a.surface));
+        let found = swept::near_within(body.awake(&awake), &body.tree(), any);
+        prop_assert_eq!(found, within);
+        let mut between = a.between(&b);
+        between.retain(|(pair, _)| has_awake(pair, [&awake, &awake_b], &b.surface));
+        let sleepy = (body.awake(&awake), other.awake(&awake_b));
+        let found = swept::near_between((sleepy.0, &body.tree()), (sleepy.1, &other.tree()));
+        prop_assert_eq!(found, between);
+    }
 }
 
 /// A sheet of 40 × 40 squares of 1/64.

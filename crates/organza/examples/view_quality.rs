@@ -3,7 +3,10 @@
 //! ```text
 //! view_quality error SCENE FIRST LAST EVERY HORIZON    distance from adaptive runs, chaos floor, popping
 //! view_quality edges SCENE FRAMES                      mean length of visible edges in every frame
+//! view_quality against SCENE START HORIZON ALONG TRUTH OTHER ...   distance of others from the truth
 //! ```
+//!
+//! ALONG, TRUTH and OTHER are settings of the scene, `PATH=VALUE`, with `&&` between two; `-` for none.
 //!
 //! All in pixels of the scene's camera, over material points that it sees: inside the picture, on faces
 //! that face it.
@@ -30,7 +33,8 @@ fn main() -> Outcome<()> {
     let told = match words.first().map(String::as_str) {
         Some("error") => error(scene.as_ref(), [number(2)?, number(3)?, number(4)?], number(5)?)?,
         Some("edges") => edges(scene.as_ref(), number(2)?)?,
-        _ => return Err("says neither `error` nor `edges`".into()),
+        Some("against") => against(scene.as_ref(), [number(2)?, number(3)?], &words[4..])?,
+        _ => return Err("says neither `error` nor `edges` nor `against`".into()),
     };
     println!("{told}");
     Ok(())
@@ -124,6 +128,46 @@ fn error(path: &Path, [first, last, every]: [u64; 3], horizon: u64) -> Outcome<s
     }))
 }
 
+/// Distances of runs from the truth some frames after all had the state that the run along has at the
+/// start, over the clothes of characters that move.
+fn against(
+    path: &Path,
+    [start, horizon]: [u64; 2],
+    variants: &[String],
+) -> Outcome<serde_json::Value> {
+    let [along, truth, others @ ..] = variants else {
+        return Err("an argument is missing; see the head of the source".into());
+    };
+    let variant = |sets: &String| {
+        let each = sets.split("&&").map(str::trim).filter(|set| *set != "-");
+        scene(path, each.map(str::to_owned).collect())
+    };
+    let mut along = World::new(&variant(along)?)?;
+    for _ in 0..start {
+        along.advance()?;
+    }
+    let state = save(&mut along);
+    let ahead = |loaded: &Loaded| -> Outcome<World> {
+        let mut world = World::new(loaded)?;
+        restore(&mut world, &state)?;
+        for _ in 0..horizon {
+            world.advance()?;
+        }
+        Ok(world)
+    };
+    let loaded = variant(truth)?;
+    let truth = ahead(&loaded)?;
+    let moves = |name: &str| truth.obstacles.iter().any(|o| o.name == name && o.is_moving());
+    let moving: Vec<_> = truth.garments.iter().filter(|garment| moves(&garment.name)).collect();
+    let counts = |panel: u32| moving.iter().any(|garment| garment.panels.contains(&panel));
+    let eye = Eye::new(&loaded, truth.time());
+    let mut errors = Vec::new();
+    for other in others {
+        errors.push(eye.rms_of(&truth.cloth, &ahead(&variant(other)?)?.cloth, &counts));
+    }
+    Ok(json!({ "errors_px": errors, "garments": moving.len() }))
+}
+
 /// Mean length of visible edges in the picture, frame by frame.
 fn edges(path: &Path, frames: u64) -> Outcome<serde_json::Value> {
     let loaded = scene(path, Vec::new())?;
@@ -176,10 +220,18 @@ impl Eye {
     }
 
     /// Distances in the picture of the middles of all triangles of `a` that are seen from the same
-    /// points of the material of `b`, with the areas they stand for (px, m²).
-    fn distances(&self, a: &ClothState, b: &ClothState) -> Vec<(f64, f64)> {
+    /// points of the material of `b`, with the areas they stand for (px, m²), of panels that count.
+    fn distances(
+        &self,
+        a: &ClothState,
+        b: &ClothState,
+        counts: &dyn Fn(u32) -> bool,
+    ) -> Vec<(f64, f64)> {
         let boxes = Lookup::new(b);
-        let seen = a.mesh.triangle_ids().filter(|&t| self.sees(a, t));
+        let seen = a
+            .mesh
+            .triangle_ids()
+            .filter(|&t| counts(a.mesh.panels()[t.index()]) && self.sees(a, t));
         seen.filter_map(|t| {
             let corners = a.corners(t);
             let [u, v, w] = a.mesh.material()[t.index()];
@@ -192,7 +244,12 @@ impl Eye {
 
     /// Root of the mean square over the area.
     fn rms(&self, a: &ClothState, b: &ClothState) -> f64 {
-        let all = self.distances(a, b);
+        self.rms_of(a, b, &|_| true)
+    }
+
+    /// The same, of panels that count.
+    fn rms_of(&self, a: &ClothState, b: &ClothState, counts: &dyn Fn(u32) -> bool) -> f64 {
+        let all = self.distances(a, b, counts);
         let area: f64 = all.iter().map(|(_, area)| area).sum();
         if area == 0.0 {
             return 0.0;
@@ -201,7 +258,7 @@ impl Eye {
     }
 
     fn most(&self, a: &ClothState, b: &ClothState) -> f64 {
-        self.distances(a, b).into_iter().map(|(px, _)| px).fold(0.0, f64::max)
+        self.distances(a, b, &|_| true).into_iter().map(|(px, _)| px).fold(0.0, f64::max)
     }
 }
 

@@ -88,6 +88,7 @@ pub fn restore(world: &mut World, checkpoint: &Checkpoint) -> Result<(), Restore
     }
     world.frame = checkpoint.frame;
     world.forget();
+    world.look_who_may_rest();
     world.note_tangles();
     Ok(())
 }

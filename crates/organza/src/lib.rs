@@ -78,6 +78,7 @@ pub mod character;
 pub mod checkpoint;
 pub mod contact;
 pub mod export;
+mod eyes;
 pub mod fabric;
 pub mod fluid;
 pub mod handles;

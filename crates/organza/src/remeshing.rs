@@ -2,16 +2,17 @@
 
 use crate::build::Garment;
 use crate::contact::Obstacles;
+use crate::eyes::Eyes;
 use crate::obstacle::Obstacle;
 use crate::obstacle_sizing;
 use crate::report::ViewSummary;
-use crate::scene::{self, Scene};
-use mesh_core::{ClothState, Mesh, par};
+use crate::scene::Scene;
+use mesh_core::{ClothState, Mesh};
 use remesh::{
     CornerMetrics, PerPanel, PhysicalSizing, RemeshError, RemeshReport, RemeshSettings,
     SizingField, adapt,
 };
-use sizing_view::{CameraPath, DepthBuffer, Sample, ViewFactors, ViewSizing, window};
+use sizing_view::{ViewFactors, ViewSizing};
 use std::time::Instant;
 
 /// Principal stretches that edits may leave in cloth without strain limits (1): more strain than this
@@ -24,7 +25,7 @@ const OBSTACLE_REACH: f64 = 4.0;
 /// What a world wants of the remesher.
 pub struct Remeshing {
     sizing: Box<dyn SizingField>,
-    view: Option<View>,
+    view: Option<Eyes>,
     /// What obstacles may turn across an edge, by panel (rad); absent where it is nowhere bounded.
     obstacle_angles: Option<Vec<f64>>,
     fixed_panels: Vec<u32>,
@@ -74,7 +75,7 @@ impl Remeshing {
         let sizing = Box::new(PerPanel { fields });
         let policy = Remeshing {
             sizing,
-            view: View::new(scene),
+            view: scene.view.as_ref().and_then(|view| Eyes::new(scene, view)),
             obstacle_angles: obstacle_angles
                 .iter()
                 .any(|a| a.is_finite())
@@ -137,7 +138,11 @@ impl Remeshing {
             hold,
             obstacle: obstacle.as_deref(),
         };
-        let factors = self.view.as_ref().map(|view| view.factors(cloth, time, obstacles));
+        let factors = self.view.as_ref().map(|eyes| {
+            let samples = eyes.samples(cloth, time, obstacles);
+            let factors = ViewFactors::evaluate(cloth, &samples, eyes.settings());
+            factors.expect("a window has its camera, and the scene's settings have been checked")
+        });
         let view_s = if factors.is_some() { lap() } else { 0.0 };
         let mut metrics = match &factors {
             None => CornerMetrics::evaluate(cloth, &*self.sizing, &settings)?,
@@ -164,76 +169,6 @@ pub struct Remeshed {
     pub sizing_s: f64,
     /// Time spent on edits (s).
     pub edits_s: f64,
-}
-
-/// What mesh sizes take of a camera.
-struct View {
-    /// All cameras, that of the scene first.
-    paths: Vec<CameraPath>,
-    view: scene::View,
-    /// Surfaces nearer to each other than this do not hide each other (m).
-    thickness: f64,
-    frame_s: f64,
-}
-
-/// Rows of the pictures in which occlusion is found: hands are wider than their pixels.
-const DEPTH_ROWS: u32 = 180;
-/// Thickness of garments with their folds, which is not told hidden from seen (m).
-const LAYERS: f64 = 0.02;
-
-impl View {
-    fn new(scene: &Scene) -> Option<View> {
-        let view = scene.view.clone()?;
-        let paths = std::iter::once(scene.camera_path.clone()?).chain(view.more_cameras.clone());
-        let thickness = LAYERS.max(2.0 * scene.contact.map_or(0.0, |contact| contact.thickness));
-        Some(View { paths: paths.collect(), view, thickness, frame_s: scene.frame_s() })
-    }
-
-    fn factors(&self, cloth: &ClothState, time: f64, obstacles: &[Obstacle]) -> ViewFactors {
-        let settings = &self.view.settings;
-        let windows = self.paths.iter().map(|path| {
-            let guess = self.view.predicted.then(|| {
-                let guess = path.foreseen(time, self.frame_s, settings.window);
-                guess.expect("the scene's cameras and its window have been checked")
-            });
-            window(guess.as_ref().unwrap_or(path), time, self.frame_s, settings)
-        });
-        let mut samples: Vec<Sample> = windows.flatten().collect();
-        if self.view.occlusion {
-            let depths = self.depths(cloth, time, obstacles, &samples);
-            for (sample, depth) in samples.iter_mut().zip(depths) {
-                sample.depth = depth;
-            }
-        }
-        let factors = ViewFactors::evaluate(cloth, &samples, settings);
-        factors.expect("a window has its camera, and the scene's settings have been checked")
-    }
-}
-
-impl View {
-    /// What stands in the way of every sample: cloth and obstacles where they are now, as the cloth is
-    /// held fixed over the window (Koh2014 Eq. (4)). None for cameras that have no depth buffer.
-    fn depths(
-        &self,
-        cloth: &ClothState,
-        time: f64,
-        obstacles: &[Obstacle],
-        samples: &[Sample],
-    ) -> Vec<Option<DepthBuffer>> {
-        let there = obstacles.iter().filter(|obstacle| obstacle.is_there(time));
-        let bodies: Vec<_> = there.map(|o| (&o.triangles, o.positions(time))).collect();
-        let mut depths = vec![None; samples.len()];
-        par::fill(&mut depths, |k| {
-            let mut depth =
-                DepthBuffer::new(&samples[k].camera, DEPTH_ROWS, self.thickness).ok()?;
-            cloth.mesh.triangle_ids().for_each(|t| depth.draw(&cloth.corners(t)));
-            for (triangles, x) in &bodies {
-                triangles.iter().for_each(|t| depth.draw(&t.map(|v| x[v as usize])));
-            }
-            Some(depth)
-        });
-        depths
-    }
 }
 
 /// Number of vertices on some panels, given in rising order.

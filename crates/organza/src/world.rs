@@ -213,6 +213,7 @@ impl World {
             prepared: None,
             potential_energy_j: 0.0,
         };
+        world.look_who_may_rest();
         world.note_tangles();
         if let Some(crossings) = world.crossings(0) {
             world.warnings.push(World::tangle_warning("in the initial state", &crossings));
@@ -355,6 +356,9 @@ impl World {
             crossings = self.crossings(frame);
         }
         self.frame = frame;
+        let looking = Instant::now();
+        self.look_who_may_rest();
+        seconds.view += looking.elapsed().as_secs_f64();
         let yielded = self.tangled.yielding.len();
         self.tangled.was_at_work = self.tangled.matters();
         self.note_crossings(crossings.as_ref());

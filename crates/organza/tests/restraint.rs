@@ -65,10 +65,30 @@ fn bad_thresholds_are_told_with_their_place() {
         ("restraint: { thresholds: 'none', law: 'spline' },", "spline"),
         ("restraint: { thresholds: { speed: { rest_m_per_s: 1 } } },", "full_m_per_s"),
         ("restraint: { law: 'ramp' },", "thresholds"),
+        (
+            "restraint: { thresholds: { view: { rest_px_per_frame: 0.1, full_px_per_frame: 1 } } },",
+            "no `camera`",
+        ),
+        (
+            "camera: { position: [2, 0, 0], target: [0, 0, 0] },
+             restraint: { thresholds: { view: { rest_px_per_frame: 1, full_px_per_frame: 0.1 } } },",
+            "inverted",
+        ),
+        (
+            "camera: { position: [2, 0, 0], target: [0, 0, 0] },
+             restraint: { thresholds: { view:
+               { rest_px_per_frame: 0.1, full_px_per_frame: 1, most_m_per_s: -1 } } },",
+            "restraint.thresholds.view.most_m_per_s: must be zero or more",
+        ),
+        (
+            "camera: { position: [2, 0, 0], target: [0, 0, 0] },
+             restraint: { thresholds: { 'automatic-view': { error_px: -1 } } },",
+            "restraint.thresholds.automatic-view.error_px: must be zero or more",
+        ),
         ("restraint: true,", "restraint"),
     ] {
         let error = parsed(&sheet(keys, "")).unwrap_err();
-        assert!(error.starts_with("s.json5:1:") && error.contains(told), "{keys}\n{error}");
+        assert!(error.starts_with("s.json5:") && error.contains(told), "{keys}\n{error}");
     }
     let own = "restraint: { thresholds: { kinetic: { rest_j: 2, full_j: 1 } } }";
     let error = parsed(&sheet("", own)).unwrap_err();
@@ -187,4 +207,56 @@ fn the_table_cloth_sleeps_beside_the_ball() {
     }
     let last = reports.last().unwrap().restraint.as_ref().unwrap();
     assert!(last.resting > 60, "{last:?}");
+}
+
+/// Out of the picture a sheet is restrained that moves slowly; before a cut to it, it is not any more.
+#[test]
+fn cloth_wakes_before_a_cut_to_it() {
+    let view = |keys: &str| {
+        let look = |start: f64, target: &str| {
+            let at = format!("time_s: {start}, position: [0.2, -3, 0], target: {target}");
+            format!("{{ start_s: {start}, keyframes: [{{ {at} }}] }}")
+        };
+        let shots = format!("{}, {}", look(0.0, "[0, -9, 0]"), look(1.0, "[0.2, 0, 0]"));
+        let keys = format!(
+            "camera: {{ position: [0.2, -3, 0], target: [0.2, 0, 0] }}, shots: [{shots}],
+             restraint: {{ bleeding_s: 0.3, thresholds: {{ {keys} }} }},"
+        );
+        World::new(&parsed(&sheet(&keys, "")).unwrap()).unwrap()
+    };
+    let mut world =
+        view("view: { rest_px_per_frame: 0.002, full_px_per_frame: 0.01, most_m_per_s: 0.2 }");
+    let reports = run(&mut world, 26);
+    let active = |frame: usize| reports[frame - 1].restraint.as_ref().unwrap().active;
+    // The window is 5 frames long, and the first frame after the cut is number 26. Six are held.
+    assert!((18..=20).all(|frame| active(frame) < 15), "{reports:?}");
+    assert!((21..=26).all(|frame| active(frame) >= 28), "{reports:?}");
+    // It is the policy that the scene chooses for an error in pixels, too.
+    let mut chosen = view("'automatic-view': { error_px: 0.8 }");
+    let reports = run(&mut chosen, 40);
+    assert!(reports[19].restraint.as_ref().unwrap().resting > 30, "{:?}", reports[19]);
+}
+
+/// Whoever stands has clothes that rest, and whoever dances does not.
+#[test]
+fn a_resting_crowd_dances_in_part() {
+    let sets = ["crowd.count=4", "crowd.columns=2", "substeps=4", "crowd.character.ease_s=0.5"];
+    let loaded = own("resting-crowd.json5", &sets);
+    assert_eq!(loaded.scene.frames, 100);
+    let mut world = World::new(&loaded).unwrap();
+    run(&mut world, 50);
+    let state = |report: &FrameReport| report.restraint.clone().unwrap();
+    let after = run(&mut world, 15);
+    assert_eq!(world.crossings(65), None);
+    let last = state(&after[14]);
+    let share = |garment: usize| {
+        let mut counts = [0usize; 2];
+        for run in last.states[garment].split_inclusive(char::is_alphabetic) {
+            let (n, letter) = run.split_at(run.len() - 1);
+            counts[usize::from(letter == "r")] += n.parse::<usize>().unwrap();
+        }
+        counts[1] as f64 / (counts[0] + counts[1]) as f64
+    };
+    let shares = [0, 1, 2, 3].map(share);
+    assert!(shares[..3].iter().all(|share| *share > 0.8) && shares[3] < 0.5, "{shares:?}");
 }

@@ -171,7 +171,7 @@ impl Frustum {
 
     /// Distance to a point of camera space (m): the nearest of its projections to the near face, two
     /// sides and the edge between them that lie on the frustum. One of four equal corners is enough.
-    fn distance_to_point(&self, p: &World3) -> f64 {
+    pub(crate) fn distance_to_point(&self, p: &World3) -> f64 {
         let ([sx, sy], near) = (self.slopes, self.near);
         let (x, y, z) = (p.x.abs(), p.y.abs(), p.z);
         if z >= near && x <= sx * z && y <= sy * z {

@@ -57,6 +57,8 @@
 //! - What stands in the way: give the samples a [`DepthBuffer`]. Cloth that is hidden from all of
 //!   them counts as not visible.
 //! - No path at hand: [`CameraPath::predicted`] guesses the next frames from the last two cameras.
+//! - Restraint by the same cameras: [`ViewRestraint`] lets particles of any kind rest that move by
+//!   less than some pixels per frame, and sooner where nobody sees them.
 //! - Far away cloth costs nothing: a panel that is far from every frustum is decided at once.
 //!
 //! # What always holds
@@ -72,6 +74,7 @@ mod error;
 mod factors;
 mod frustum;
 mod path;
+mod restraint;
 mod screen;
 mod settings;
 mod silhouette;
@@ -84,6 +87,7 @@ pub use error::ViewError;
 pub use factors::ViewFactors;
 pub use frustum::{Frustum, Place};
 pub use path::{CameraPath, Key, Shot};
+pub use restraint::{PixelThresholds, ViewRestraint, pixel_speeds};
 pub use screen::bounded;
 pub use settings::ViewSettings;
 pub use sizing::ViewSizing;

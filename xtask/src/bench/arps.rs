@@ -40,11 +40,9 @@ fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
     poke(context, report)?;
     context.save(report)?;
     paper(context, report)?;
-    report.remark("arps.resting_crowd.speedup is left out: there is no scene `resting-crowd`");
-    report.remark(
-        "arps.view.combined_speedup is left out: restraint does not depend on a camera yet",
-    );
-    Ok(())
+    crowd(context, report)?;
+    context.save(report)?;
+    combined(context, report)
 }
 
 fn simulate(
@@ -165,6 +163,113 @@ fn poke(context: &Context, report: &mut Report) -> Result<(), Failure> {
     );
     report.add("arps.poke.energy_gain", Figure::exact(gain / (most - least), "1", &note));
     Ok(())
+}
+
+/// Frames until a tenth of the crowd dances.
+const STAND: usize = 50;
+/// Frames from a common state to the comparison of two runs.
+const HORIZON: usize = 3;
+
+/// The crowd of which a tenth moves.
+fn crowd(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    let (count, frames) = if context.options.quick { (20, STAND + 10) } else { (100, 100) };
+    let count = format!("crowd.count={count}");
+    let restrained = simulate(context, "resting-crowd", frames, "restrained", &[&count])?;
+    let plain = simulate(context, "resting-crowd", frames, "plain", &[&count, "restraint=null"])?;
+    let [fast, slow] = [&restrained, &plain].map(|run| run.info.each("/seconds/total"));
+    let ratio = |from: usize, to: usize| {
+        slow[from..to].iter().sum::<f64>() / fast[from..to].iter().sum::<f64>()
+    };
+    let troubles = restrained.info.troubles();
+    let note = format!(
+        "Wall time without restraint over that with it, over frames {} to {frames}, in which a tenth of \
+         the characters dances ({count}).{troubles}",
+        STAND + 1
+    );
+    let figure = Figure::exact(ratio(STAND, frames), "1", &note);
+    report.add("arps.resting_crowd.speedup", figure);
+    let note =
+        "The same over the whole run, of which all clothes fall into place in the first half.";
+    report.add("arps.resting_crowd.speedup_whole", Figure::exact(ratio(0, frames), "1", note));
+    let scene = context.root.join("scenes/resting-crowd.json5").display().to_string();
+    let variants = [
+        count.clone(),
+        format!("{count}&&restraint=null"),
+        count.clone(),
+        format!("{count}&&restraint=null&&newton.tolerance=0.01&&newton.max_iterations=12"),
+    ];
+    let errors = against(context, &scene, STAND + 5, &variants)?;
+    let note = format!(
+        "RMS distance in the picture of the clothes of all who dance, {HORIZON} frames after both runs had \
+         the same state"
+    );
+    for (name, k, other) in [
+        ("pixel_error", 0, "with restraint and without."),
+        ("chaos_floor", 1, "without restraint, and with twice the iterations."),
+    ] {
+        let figure =
+            errors.get(k).and_then(|px| Figure::exact(*px, "px", &format!("{note}: {other}")));
+        report.add(&format!("arps.resting_crowd.{name}"), figure);
+    }
+    Ok(())
+}
+
+/// Restraint by what the camera sees, and its speeds.
+const SEEN: &str = "restraint={thresholds: {view: {rest_px_per_frame: 0.2, full_px_per_frame: 1}}, \
+                    bleeding_s: 0.2}";
+
+/// Mesh sizes and restraint by view, each alone and both.
+fn combined(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    let quick = context.options.quick;
+    let (frames, start) = if quick { (3, 2) } else { (75, 40) };
+    let kinds: [(&str, &[&str]); 4] = [
+        ("neither", &["view=null"]),
+        ("sizing", &[]),
+        ("restraint", &["view=null", SEEN]),
+        ("both", &[SEEN]),
+    ];
+    let mut cpu = Vec::new();
+    for (kind, sets) in kinds {
+        cpu.push(simulate(context, "dancers", frames, kind, sets)?.cpu_s);
+    }
+    let scene = context.root.join("scenes/dancers.json5").display().to_string();
+    let mut variants = vec!["view=null".to_owned(), "view=null".to_owned()];
+    let text = |sets: &[&str]| if sets.is_empty() { "-".into() } else { sets.join("&&") };
+    variants.extend(kinds.iter().map(|(_, sets)| text(sets)));
+    let errors = against(context, &scene, start, &variants)?;
+    for (k, (kind, _)) in kinds.iter().enumerate().skip(1) {
+        let note = format!(
+            "CPU seconds of the dancers without mesh sizes and restraint by view over those with {kind}, whole \
+             processes over {frames} frames."
+        );
+        let name = if *kind == "both" { "combined" } else { *kind };
+        let figure = Figure::exact(cpu[0] / cpu[k], "1", &note);
+        report.add(&format!("arps.view.{name}_speedup"), figure);
+        let note = format!(
+            "RMS distance in the picture from the run with neither, {HORIZON} frames after both had the state \
+             of frame {start}."
+        );
+        let figure = errors.get(k).and_then(|px| Figure::exact(*px, "px", &note));
+        report.add(&format!("arps.view.{name}_pixel_error"), figure);
+    }
+    Ok(())
+}
+
+/// Distances in the picture (px) of runs from the truth; see `view_quality`.
+fn against(
+    context: &Context,
+    scene: &str,
+    start: usize,
+    variants: &[String],
+) -> Result<Vec<f64>, Failure> {
+    say(format!("{scene}: error in pixels"));
+    let mut arguments = vec!["against".to_owned(), scene.to_owned(), start.to_string()];
+    arguments.push(HORIZON.to_string());
+    arguments.extend_from_slice(variants);
+    let told = context.program.example("view_quality", &arguments)?;
+    let told: serde_json::Value = serde_json::from_str(&told)
+        .map_err(|error| Failure::Unable(format!("view_quality: {error}")))?;
+    Ok(told["errors_px"].as_array().into_iter().flatten().filter_map(|px| px.as_f64()).collect())
 }
 
 /// How often the paper's scheme blows up on nets on which the convex one never gains energy.

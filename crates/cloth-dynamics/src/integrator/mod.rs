@@ -7,7 +7,7 @@ pub use implicit_euler::ImplicitEuler;
 pub use sdirk2::Sdirk2;
 
 use crate::force::Stage;
-use crate::newton::{Inertia, minimise};
+use crate::newton::{Inertia, Minimum, minimise};
 use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
 use crate::solver::LinearSolver;
 use crate::system::{Constraints, System};
@@ -115,7 +115,7 @@ pub(crate) fn plain_stage(
     let contact_s = clock.elapsed().as_secs_f64();
     let inertia =
         Inertia { mass: &cloth.m, target: &target, h, time, fixed: &fixed, restrained: None };
-    let (x, mut report) = minimise(system, solver, &inertia, &starts, settings)?;
+    let Minimum { x, mut report, .. } = minimise(system, solver, &inertia, &starts, settings)?;
     report.contact_s += contact_s;
     let v = x.iter().zip(base).map(|(x, base)| (x - base) / h).collect();
     Ok(StageEnd { x, v, report })

@@ -9,7 +9,7 @@
 //! moves, see [`arps::ConvexProblem`]. Its solution is a direction in which Φ falls. Where everything
 //! has full dynamics that is one linear system, the same as without restraint.
 
-use super::{Direction, Found, Inertia, Newton};
+use super::{Direction, Found, Inertia, Model, Newton};
 use crate::element::Stiffness;
 use crate::solve_report::{SolveError, SolveReport};
 use crate::solver::{BlockMatrix, LinearError, LinearSolver, clear_fixed};
@@ -25,6 +25,8 @@ pub(crate) struct Restrained<'a> {
     pub base: &'a [World3],
     /// Momenta that the stage would have without forces (kg m/s).
     pub p: &'a [World3],
+    /// Displacements that the stage would have with the velocities at its start (m).
+    pub guess: &'a [World3],
     /// Kinetic energies; what is fixed rests for ever.
     pub conjugates: &'a [Conjugate],
     /// Error of a momentum that rests or is restrained at which the stage is converged, as a share of
@@ -52,15 +54,14 @@ impl Restrained<'_> {
 
 /// Share of the tolerance to which a convex problem is solved.
 const INNER: f64 = 0.5;
-/// Share of the error of an iteration to which it is solved, if that is more: the next iteration has
-/// other forces.
-const REDUCTION: f64 = 0.3;
 /// Share of the greatest speed by which momenta over mass may be off at rest and in transition, as long
 /// as that is less than a share of what may rest.
 const COARSE: [f64; 2] = [0.1, 0.3];
 const ROUGH: f64 = 0.5;
-/// The most linear systems for one direction; what is left then is for the next.
-const MAX_ROUNDS: usize = 3;
+/// The most linear systems for one direction; what is left then is for the next. Few need more than ten:
+/// to begin again before the problem is solved costs more, since the forces of the next point are those of
+/// what moves the wrong way.
+const MAX_ROUNDS: usize = 20;
 /// With a greater share of movers, those that rest keep rows of the identity, and the matrix its
 /// pattern.
 const MOST: f64 = 0.7;
@@ -132,16 +133,14 @@ impl Newton<'_> {
         };
         let mut tolerance: Vec<f64> = (0..n).map(tolerance).collect();
         let error =
-            |i: usize| restrained.conjugates[i].error(&drive[i], &from[i], h) / tolerance[i];
+            |i: usize| restrained.conjugates[i].mismatch(&drive[i], &from[i], h) / tolerance[i];
         let is_slow =
             |i: usize| mass[i] * from[i].norm() < h * restrained.conjugates[i].held().p_f();
         let slow = (0..n).filter(|&i| is_slow(i)).map(error).fold(0.0, f64::max);
         if self.is_near && slow <= 1.0 {
             return Ok(Found::Minimum);
         }
-        let error = (0..n).map(error).fold(0.0, f64::max);
-        let enough = f64::max(INNER, REDUCTION * error);
-        tolerance.iter_mut().for_each(|tolerance| *tolerance *= enough);
+        tolerance.iter_mut().for_each(|tolerance| *tolerance *= INNER);
         let operator = Operator(RefCell::new(&mut self.system.matrix));
         let problem = ConvexProblem {
             h,
@@ -150,9 +149,12 @@ impl Newton<'_> {
             drive: &drive,
             stiffness: &operator,
             tolerance: &tolerance,
+            by_velocity: true,
             max_rounds: MAX_ROUNDS,
         };
-        let mut to = from.clone();
+        // One stage resembles the next, in who moves too.
+        let is_first = self.report.iterations == 0;
+        let mut to = if is_first { restrained.guess.to_vec() } else { from.clone() };
         let (mut failed, mut shifted) = (None, false);
         let (solver, report) = (&mut *self.solver, &mut self.report);
         let found = self.directions.convex.solve(&problem, &mut to, |movers, out| {
@@ -162,22 +164,26 @@ impl Newton<'_> {
             Ok(())
         });
         self.report.linear_s += clock.elapsed().as_secs_f64();
-        match (found, failed) {
+        let is_telling = match (found, failed) {
             (Ok(convex), _) => {
                 self.report.rest.solves += convex.n_solves;
                 self.report.rest.unknowns += convex.n_unknowns;
                 self.directions.was_full = convex.is_full;
+                convex.converged || convex.is_full
             }
             (Err(_), _) if self.kind == Stiffness::Exact => return Ok(Found::TooExact),
             (Err(_), Some(source)) => return Err(SolveError::Linear { time, source }),
             (Err(_), None) => return Err(SolveError::NotFinite { time, h }),
-        }
+        };
+        let p = self.directions.convex.end_momenta().to_vec();
         let step: Vec<World3> = to.iter().zip(&from).map(|(to, from)| to - from).collect();
         let slope = par::sum(n, |i| {
             let kinetic = || restrained.one(i, &to[i], h) - restrained.one(i, &from[i], h);
             if moves(i) { gradient[i].dot(&step[i]) + kinetic() } else { 0.0 }
         });
-        let is_telling = self.directions.was_full;
+        let mut end = vec![World3::zeros(); n];
+        par::fill(&mut end, |i| self.inertia.reach(i, &self.x[i], &step[i]));
+        self.model = Some(Model { x: end, p });
         Ok(Found::Direction(Direction { step, slope: slope.min(0.0), is_telling, shifted }))
     }
 }

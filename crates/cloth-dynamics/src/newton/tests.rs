@@ -83,7 +83,7 @@ impl Problem {
         let mut solver =
             solver.build(LinearSettings { tolerance: 1e-8, ..LinearSettings::default() });
         let settings = NewtonSettings { max_iterations, tolerance };
-        let (x, report) =
+        let Minimum { x, report, .. } =
             minimise(system, solver.as_mut(), &inertia, &starts, &settings).expect("finite");
         Outcome { phi: [start, inertia.potential(system, &x)], x, report }
     }
@@ -194,7 +194,7 @@ fn a_step_of_a_shifted_matrix_is_not_convergence() {
     let mut solver = SolverKind::SparseCholesky.build(LinearSettings::default());
     let settings = NewtonSettings { max_iterations: 1, tolerance };
     let starts = [x.clone(), x];
-    let (_, next) =
+    let Minimum { report: next, .. } =
         minimise(&mut problem.system, solver.as_mut(), &inertia, &starts, &settings).unwrap();
     println!("{phi:?} {report:?}\n{next:?}");
     assert!(next.residual <= tolerance, "{} m/s left to go", next.residual);

@@ -3,7 +3,7 @@
 use crate::force::Stage;
 use crate::integrator::StageStart;
 use crate::newton::restrained::Restrained;
-use crate::newton::{Inertia, minimise};
+use crate::newton::{Inertia, Minimum, minimise};
 use crate::part::Part;
 use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
 use crate::solver::LinearSolver;
@@ -15,8 +15,10 @@ use std::time::Instant;
 /// One try of a stage, in the numbers of the whole.
 pub(super) struct Try {
     pub(super) x: Vec<World3>,
-    /// Gradient on the active vertices; absent where none of them rests.
-    pub(super) gradient: Option<Vec<World3>>,
+    /// Gradient (N) on the active vertices with which momenta of the stage end.
+    pub(super) gradient: Vec<World3>,
+    /// It goes with the displacements as the convex problem of the stage wants it.
+    pub(super) is_solved: bool,
     pub(super) report: SolveReport,
     pub(super) pushed: Vec<u32>,
 }
@@ -53,12 +55,18 @@ pub(super) struct Local {
     x_t0: Vec<World3>,
     base: Vec<World3>,
     p: Vec<World3>,
+    guess: Vec<World3>,
     fixed: Vec<bool>,
     conjugates: Vec<Conjugate>,
     starts: [Vec<World3>; 2],
 }
 
-type Solved = (Vec<World3>, Option<Vec<World3>>, SolveReport);
+pub(super) struct Solved {
+    pub(super) x: Vec<World3>,
+    pub(super) gradient: Vec<World3>,
+    pub(super) is_solved: bool,
+    pub(super) report: SolveReport,
+}
 
 impl Local {
     pub(super) fn new(
@@ -66,7 +74,7 @@ impl Local {
         ids: Vec<u32>,
         answers: &dyn Fn(usize) -> bool,
     ) -> Result<Local, SolveError> {
-        let &StageStart { x_t0, base, time_t0, .. } = whole.start;
+        let &StageStart { x_t0, base, velocity, h, time_t0, .. } = whole.start;
         let n = ids.len();
         let each = |of: &[World3]| ids.iter().map(|&i| of[i as usize]).collect::<Vec<_>>();
         let mut local = Local {
@@ -74,6 +82,7 @@ impl Local {
             x_t0: each(x_t0),
             base: each(base),
             p: each(whole.p),
+            guess: Vec::with_capacity(n),
             starts: [each(whole.from), Vec::with_capacity(n)],
             fixed: Vec::with_capacity(n),
             conjugates: Vec::with_capacity(n),
@@ -84,6 +93,8 @@ impl Local {
             let is_fixed = whole.fixed[i] || !answers(i);
             local.fixed.push(is_fixed);
             local.starts[1].push(if is_fixed { local.starts[0][k] } else { whole.target(i) });
+            let way = || whole.held[i].velocity(&(velocity[i] * local.mass[k])) * h;
+            local.guess.push(if is_fixed { World3::zeros() } else { way() });
             let held = if is_fixed { for_ever(local.mass[k]) } else { whole.held[i] };
             let told = |source| SolveError::Restraint { time: time_t0, source };
             if held.law() == Law::Exact && !held.is_free() && held.p_r() < f64::INFINITY {
@@ -118,19 +129,26 @@ impl Local {
             restrained: Some(Restrained {
                 base: &self.base,
                 p: &self.p,
+                guess: &self.guess,
                 conjugates: &self.conjugates,
                 fine: whole.fine,
             }),
         };
-        let (x, mut report) = minimise(system, solver, &inertia, &self.starts, settings)?;
-        let rests = |i: usize| !self.fixed[i] && x[i] == self.base[i];
-        let gradient = (0..x.len()).any(rests).then(|| {
-            let clock = Instant::now();
-            let gradient = system.gradient_with_contact(&x);
-            report.assembly_s += clock.elapsed().as_secs_f64();
-            gradient
-        });
-        Ok((x, gradient, report))
+        let Minimum { x, p, mut report } =
+            minimise(system, solver, &inertia, &self.starts, settings)?;
+        let is_solved = p.is_some();
+        let gradient = match p {
+            // Forces that are linear in the displacements of the last iteration: with those at its end,
+            // what is left of it would be a change of momentum that moved nothing.
+            Some(p) => p.iter().zip(&self.p).map(|(end, start)| (start - end) / h).collect(),
+            None => {
+                let clock = Instant::now();
+                let gradient = system.gradient_with_contact(&x);
+                report.assembly_s += clock.elapsed().as_secs_f64();
+                gradient
+            }
+        };
+        Ok(Solved { x, gradient, is_solved, report })
     }
 }
 
@@ -144,16 +162,14 @@ fn for_ever(mass: f64) -> Held {
 pub(super) fn scattered(
     part: &Part,
     whole: &WholeStage<'_>,
-    (x, gradient, report): Solved,
+    solved: Solved,
     pushed: Vec<u32>,
 ) -> Try {
-    let mut all = whole.from.to_vec();
-    let mut forces = gradient.as_ref().map(|_| vec![World3::zeros(); all.len()]);
+    let mut x = whole.from.to_vec();
+    let mut gradient = vec![World3::zeros(); x.len()];
     for (k, &i) in part.vertices().iter().enumerate() {
-        all[i as usize] = x[k];
-        if let (Some(forces), Some(gradient)) = (&mut forces, &gradient) {
-            forces[i as usize] = gradient[k];
-        }
+        x[i as usize] = solved.x[k];
+        gradient[i as usize] = solved.gradient[k];
     }
-    Try { x: all, gradient: forces, report, pushed }
+    Try { x, gradient, is_solved: solved.is_solved, report: solved.report, pushed }
 }

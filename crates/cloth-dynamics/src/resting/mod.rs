@@ -25,7 +25,7 @@ use crate::solve_report::{NewtonSettings, RestReport, SolveError, SolveReport};
 use crate::solver::LinearSolver;
 use crate::system::{Constraints, System};
 use arps::{Held, Particle, Rest, Restraint, WakeQueue};
-use local::{Local, Try, WholeStage, scattered};
+use local::{Local, Solved, Try, WholeStage, scattered};
 use mesh_core::{ClothState, World3};
 use neighbours::Neighbours;
 use part_contact::{PartContact, gradient_of};
@@ -47,8 +47,14 @@ const ROUGH: f64 = 0.05;
 /// By what momentum bleeds faster at rest: so that what is slow does not creep on for ever.
 const STATIC: f64 = 2.0;
 /// Effective speed, as a share of that up to which a vertex rests, below which bleeding puts it to rest
-/// if it gets slower still.
+/// unless it gets faster.
 const STICK: f64 = 0.2;
+/// By how much more its momentum may grow in a stage, as a share of what bleeds: forces that damping
+/// balances do not end creeping, and at rest are less than half of what that withstands.
+const GROWTH: f64 = 0.1;
+/// Share of the momentum up to which a vertex rests that one is left with which is put to rest: rounding
+/// must not take it out again, where it would be held by the lesser friction of what moves.
+const INSIDE: f64 = 1.0 - 1e-12;
 /// Change of a contact force on a sleeper that is rounding (1).
 const SAME: f64 = 1e-9;
 
@@ -107,6 +113,23 @@ impl Resting {
         self.n_active = self.active.len();
         self.patch = None;
         self.queue = WakeQueue::new();
+    }
+
+    /// Goes on with another policy from a time (s) on; sleepers with other thresholds wake at another
+    /// time. Momenta must have been [settled](Resting::settle).
+    pub(crate) fn change_policy(&mut self, policy: RestingPolicy, cloth: &ClothState, time: f64) {
+        let rate = |policy: &RestingPolicy| policy.bleeding.map(|tau| tau / STATIC);
+        for i in 0..self.active.len() {
+            let Some(&rest) = self.queue.get(i) else { continue };
+            let (mass, x) = (cloth.m[i], cloth.x[i]);
+            let p_r = policy.restraint.at(&Particle { index: i, mass, x, time }).p_r();
+            if !self.was_fixed[i] && (p_r != rest.p_r || rate(&policy) != rest.bleeding) {
+                let p = cloth.v[i] * mass;
+                let bleeding = rate(&policy);
+                self.queue.rest(i, Rest { since: time, p, p_r, bleeding, ..rest });
+            }
+        }
+        self.policy = policy;
     }
 
     /// Brings the velocities of sleepers up to a time (s).
@@ -201,11 +224,17 @@ impl Resting {
         }
         let done = loop {
             let clock = Instant::now();
-            self.begin_contact(system, &whole, &mut rest)?;
+            self.begin_contact(system, &whole, &mut rest);
             contact_s += clock.elapsed().as_secs_f64();
             let done = if self.n_active == 0 {
                 let report = SolveReport { stages: 1, ..SolveReport::default() };
-                Try { x: from.clone(), gradient: None, report, pushed: Vec::new() }
+                Try {
+                    x: from.clone(),
+                    gradient: vec![World3::zeros(); n],
+                    is_solved: false,
+                    report,
+                    pushed: Vec::new(),
+                }
             } else {
                 self.attempt(system, solver, settings, &whole, &mut rest)?
             };
@@ -215,7 +244,7 @@ impl Resting {
                 let around = self.near.around(moved.map(|i| i as u32), REACH);
                 missing.extend(around.into_iter().filter(|&i| !self.active[i as usize]));
                 if let Some(contact) = &system.contact {
-                    missing.extend(self.disturbed(&**contact, &done.x, &whole, true)?);
+                    missing.extend(self.disturbed(&**contact, &done.x, &whole, true));
                 }
             }
             if missing.is_empty() {
@@ -224,11 +253,11 @@ impl Resting {
             rest.redone += 1;
             self.grow(missing, true);
         };
-        let Try { x, gradient, mut report, .. } = done;
+        let Try { x, gradient, is_solved, mut report, .. } = done;
         report.contact_s += contact_s;
         rest.untouched = n - self.n_active;
-        let v = self.momenta(&whole, &x, gradient.as_deref(), &mut rest);
-        self.put_to_sleep(&whole, &x, &v, gradient.as_deref(), system.contact.as_deref())?;
+        let v = self.momenta(&whole, &x, &gradient, is_solved, &mut rest);
+        self.put_to_sleep(system, &whole, &x, &v);
         self.was_fixed.clone_from(&fixed);
         self.last.clone_from(&start.constraints);
         report.rest.add(&rest);
@@ -301,18 +330,23 @@ impl Resting {
         system: &mut System,
         whole: &WholeStage<'_>,
         report: &mut RestReport,
-    ) -> Result<(), SolveError> {
-        let Some(contact) = &mut system.contact else { return Ok(()) };
+    ) {
+        let Some(contact) = &mut system.contact else { return };
         let &StageStart { x_t0, base, h, time_t0, time, .. } = whole.start;
         let target = |i: usize| whole.target(i);
         let target: Vec<World3> = (0..x_t0.len()).map(target).collect();
+        if self.n_active < x_t0.len() {
+            let sleepers: Vec<bool> = self.active.iter().map(|active| !active).collect();
+            contact.rest(Some(&sleepers));
+        } else {
+            contact.rest(None);
+        }
         contact.begin(Stage { x_t0, base, h }, [time_t0, time], &whole.cloth.m, &target);
         if self.n_active < x_t0.len() {
-            let disturbed = self.disturbed(&**contact, whole.from, whole, false)?;
+            let disturbed = self.disturbed(&**contact, whole.from, whole, false);
             report.woken += disturbed.len();
             self.grow(disturbed, false);
         }
-        Ok(())
     }
 
     /// Sleepers that contact wakes in this stage, if the cloth ends it at `x`. Of the others, the
@@ -323,8 +357,8 @@ impl Resting {
         x: &[World3],
         whole: &WholeStage<'_>,
         is_end: bool,
-    ) -> Result<Vec<u32>, SolveError> {
-        let gradient = gradient_of(contact, x)?;
+    ) -> Vec<u32> {
+        let gradient = gradient_of(contact, x);
         let (h, time) = (whole.start.h, whole.start.time);
         let (mut woken, mut changed) = (Vec::new(), Vec::new());
         for (i, now) in gradient.iter().enumerate() {
@@ -347,7 +381,7 @@ impl Resting {
                 self.touching[i] = gradient[i];
             }
         }
-        Ok(woken)
+        woken
     }
 
     /// Solves the stage for the active vertices.
@@ -365,8 +399,9 @@ impl Resting {
             system.springs = Springs { springs: whole.start.constraints.springs.clone() };
             system.begin(local.stage(whole.start.h));
             system.make_room_for_contact()?;
-            let (x, gradient, report) = local.solve(system, solver, settings, whole)?;
-            return Ok(Try { x, gradient, report, pushed: Vec::new() });
+            let Solved { x, gradient, is_solved, report } =
+                local.solve(system, solver, settings, whole)?;
+            return Ok(Try { x, gradient, is_solved, report, pushed: Vec::new() });
         }
         if self.patch.is_none() {
             report.parts += 1;
@@ -403,7 +438,8 @@ impl Resting {
         &self,
         whole: &WholeStage<'_>,
         x: &[World3],
-        gradient: Option<&[World3]>,
+        gradient: &[World3],
+        is_solved: bool,
         report: &mut RestReport,
     ) -> Vec<World3> {
         let &StageStart { base, h, time, .. } = whole.start;
@@ -416,52 +452,69 @@ impl Resting {
                 *v = d / h;
                 if !whole.fixed[i] && !held.is_free() {
                     let conjugate = held.conjugate().expect("it was convex before the stage");
-                    let p = conjugate.momentum(v);
-                    *v = self.stuck(held, &whole.p[i], p) / whole.cloth.m[i];
+                    let by_force = whole.p[i] - gradient[i] * h;
+                    let p = if is_solved && conjugate.is_vague(&by_force, &d, h) {
+                        by_force
+                    } else {
+                        conjugate.momentum(v)
+                    };
+                    let before = whole.start.velocity[i] * whole.cloth.m[i];
+                    *v = self.stuck(held, &before, p, h) / whole.cloth.m[i];
                 }
                 continue;
             }
-            let gradient = gradient.map_or_else(World3::zeros, |gradient| gradient[i]);
-            let mut p = whole.p[i] - gradient * h;
+            let mut p = whole.p[i] - gradient[i] * h;
             let (norm, most) = (p.norm(), whole.held[i].p_r());
             let is_off = norm > (1.0 + 2.0 * whole.fine) * most;
             if is_off || (norm > most && self.policy.bleeding.is_some()) {
                 // Left over by a stage that did not converge, it would be energy from nowhere; where
                 // momentum bleeds, less does too.
                 report.cut += usize::from(is_off);
-                p *= most / norm;
+                p *= INSIDE * most / norm;
             }
             *v = p / whole.cloth.m[i];
         }
         v
     }
 
-    /// A momentum at the end of a stage, put to rest if it bleeds, is slow, and gets slower.
-    fn stuck(&self, held: &Held, before: &World3, p: World3) -> World3 {
+    /// A momentum at the end of a stage of length `h` (s), put to rest if it bleeds, is slow, and does not
+    /// get faster. `before` is that at its beginning, before any of it bled: with what was left then, each
+    /// force forwards would make it faster, though friction holds it.
+    fn stuck(&self, held: &Held, before: &World3, p: World3, h: f64) -> World3 {
+        let Some(tau) = self.policy.bleeding else { return p };
         let (r, p_r) = (p.norm(), held.p_r());
-        let is_slow = || held.dphi(r) < STICK * p_r && r <= before.norm();
-        if self.policy.bleeding.is_some() && is_slow() { p * (p_r / r) } else { p }
+        let most = before.norm() + GROWTH * (h / tau).min(1.0) * p_r;
+        let is_slow = held.dphi(r) < STICK * p_r;
+        if r > p_r && is_slow && r <= most { p * (INSIDE * p_r / r) } else { p }
+    }
+
+    /// Gradient of all but contact (N), right for the active vertices.
+    fn elastic_gradient(&self, system: &System, x: &[World3]) -> Vec<World3> {
+        let Some(Patch { part, system: own }) = &self.patch else { return system.gradient(x) };
+        let gradient = own.gradient(&part.gather(x));
+        let mut all = vec![World3::zeros(); x.len()];
+        part.vertices().iter().zip(&gradient).for_each(|(&i, g)| all[i as usize] = *g);
+        all
     }
 
     /// Lets vertices sleep that are far from all that moved, if that makes the part much smaller.
     fn put_to_sleep(
         &mut self,
+        system: &System,
         whole: &WholeStage<'_>,
         x: &[World3],
         v: &[World3],
-        gradient: Option<&[World3]>,
-        contact: Option<&dyn Contact>,
-    ) -> Result<(), SolveError> {
+    ) {
         let &StageStart { x_t0, base, time, .. } = whole.start;
         let n = x.len();
         let moved = (0..n).filter(|&i| x[i] != x_t0[i] || base[i] != x_t0[i]);
         let wanted = self.near.around(moved.map(|i| i as u32), 2 * REACH);
         if wanted.len() as f64 >= SHRINK * self.n_active as f64 {
-            return Ok(());
+            return;
         }
-        // Something rests, or all is fixed.
-        let Some(gradient) = gradient else { return Ok(()) };
-        let touching = contact.map(|contact| gradient_of(contact, x)).transpose()?;
+        let gradient = self.elastic_gradient(system, x);
+        let contact = system.contact.as_deref();
+        let touching = contact.map(|contact| gradient_of(contact, x));
         let mut is_wanted = vec![false; n];
         wanted.iter().for_each(|&i| is_wanted[i as usize] = true);
         for i in 0..n {
@@ -471,7 +524,9 @@ impl Resting {
             let (f, p, p_r) = if whole.fixed[i] {
                 (World3::zeros(), World3::zeros(), f64::INFINITY)
             } else {
-                (-gradient[i], v[i] * whole.cloth.m[i], whole.held[i].p_r())
+                let pressed = touching.as_ref().map_or_else(World3::zeros, |of| of[i]);
+                let f = -(gradient[i] + pressed);
+                (f, v[i] * whole.cloth.m[i], whole.held[i].p_r())
             };
             let bleeding = self.policy.bleeding.map(|tau| tau / STATIC);
             self.queue.rest(i, Rest { since: time, p, f, p_r, bleeding });
@@ -482,6 +537,5 @@ impl Resting {
             }
         }
         self.patch = None;
-        Ok(())
     }
 }

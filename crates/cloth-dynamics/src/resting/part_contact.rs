@@ -92,13 +92,10 @@ impl Work {
 }
 
 /// Gradient of the contact of the whole cloth (N).
-pub(super) fn gradient_of(
-    contact: &dyn Contact,
-    x: &[World3],
-) -> Result<Vec<World3>, PatternError> {
-    let mut work = Work::default();
-    work.fill(contact, x)?;
-    Ok(work.gradient)
+pub(super) fn gradient_of(contact: &dyn Contact, x: &[World3]) -> Vec<World3> {
+    let mut gradient = vec![World3::zeros(); x.len()];
+    contact.add_gradient(x, &mut gradient);
+    gradient
 }
 
 impl Contact for PartContact {
@@ -119,6 +116,14 @@ impl Contact for PartContact {
     fn energy(&self, x: &[World3]) -> f64 {
         let all = self.shared().everywhere(&self.part, x);
         self.with(|whole| whole.energy(&all))
+    }
+
+    fn add_gradient(&self, x: &[World3], gradient: &mut [World3]) {
+        let all = self.shared().everywhere(&self.part, x);
+        let whole = self.with(|whole| gradient_of(whole, &all));
+        for (k, &i) in self.part.vertices().iter().enumerate() {
+            gradient[k] += whole[i as usize];
+        }
     }
 
     fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {

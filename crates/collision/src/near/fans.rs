@@ -40,7 +40,7 @@ fn around(body: Body<'_>, p: usize, pairs: &mut Vec<[u32; 2]>) {
     let rings = body.surface().rings();
     let (ring, triangles) = (rings.of(p), rings.triangles_of(p));
     let n = triangles.len();
-    if n < 2 {
+    if n < 2 || !body.has_awake(ring) && !body.has_awake(&[p as u32]) {
         return;
     }
     let is_closed = ring[0] == ring[n];

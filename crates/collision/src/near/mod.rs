@@ -21,8 +21,13 @@ pub(crate) fn within(
     tree: &Bvh,
     most: impl Fn(&[u32; 4], PairKind) -> f64 + Sync,
 ) -> Vec<(Pair, f64)> {
-    let groups = tree.self_groups();
-    let used: Vec<u32> = (0..tree.n_groups() as u32).collect();
+    let (groups, used) = if body.is_all_awake() {
+        (tree.self_groups(), (0..tree.n_groups() as u32).collect())
+    } else {
+        let groups = tree.self_groups_awake(&awake_groups(body, tree));
+        let used = distinct(groups.iter().flatten().copied());
+        (groups, used)
+    };
     let covered = |v: u32| fans::covers(body, v);
     let quads = Quads::new(body, tree, &used, &Frame::of(&tree.bounds()), covered);
     let mut pairs = fans::pairs(body);
@@ -49,16 +54,16 @@ pub(crate) fn between(
     (a, tree_a): (Body<'_>, &Bvh),
     (b, tree_b): (Body<'_>, &Bvh),
 ) -> Vec<(Pair, f64)> {
-    let groups = tree_a.groups_with(tree_b);
+    let groups = if a.is_all_awake() || b.is_all_awake() {
+        tree_a.groups_with(tree_b)
+    } else {
+        let awake = [awake_groups(a, tree_a), awake_groups(b, tree_b)];
+        tree_a.groups_with_awake(tree_b, [&awake[0], &awake[1]])
+    };
     if groups.is_empty() {
         return Vec::new();
     }
-    let used = [0, 1].map(|side| {
-        let mut used: Vec<u32> = groups.iter().map(|pair| pair[side]).collect();
-        used.sort_unstable();
-        used.dedup();
-        used
-    });
+    let used = [0, 1].map(|side| distinct(groups.iter().map(|pair| pair[side])));
     // Of a large body only a part may be near.
     let mut bounds = Aabb::EMPTY;
     for (tree, used) in [(tree_a, &used[0]), (tree_b, &used[1])] {
@@ -78,6 +83,24 @@ pub(crate) fn between(
         });
     });
     sorted(found)
+}
+
+/// Marks of the groups of which some vertex is awake.
+fn awake_groups(body: Body<'_>, tree: &Bvh) -> Vec<bool> {
+    let mut awake = vec![false; tree.n_groups()];
+    let triangles = body.surface().triangles();
+    par::fill(&mut awake, |g| {
+        tree.elements_of(g).iter().any(|&t| body.has_awake(&triangles[t as usize]))
+    });
+    awake
+}
+
+/// The numbers of a list, each once, ascending.
+fn distinct(of: impl Iterator<Item = u32>) -> Vec<u32> {
+    let mut all: Vec<u32> = of.collect();
+    all.sort_unstable();
+    all.dedup();
+    all
 }
 
 /// Calls `found` with all pairs of triangles of two quads that may meet, of those with a bit in `hits`:
@@ -130,6 +153,9 @@ fn near(
     limit: &impl Fn(&[u32; 4], PairKind) -> f64,
 ) -> Option<(Pair, f64)> {
     let vertices = pair.vertices(a.surface(), b.surface());
+    if !is_awake(pair, &vertices, a, b) {
+        return None;
+    }
     let x = &pair.positions(vertices, a.x_t0(), b.x_t0());
     let is_edges = pair.kind == PairKind::EdgeEdge;
     let Candidate { x_t1, thickness, .. } = &Candidate::of(pair, a, b);
@@ -153,6 +179,17 @@ fn near(
     };
     let is_near = squared <= reach * reach && boxes_overlap(pair, a, b);
     is_near.then(|| (pair, squared.sqrt()))
+}
+
+/// Whether any vertex of a pair is awake.
+#[inline]
+fn is_awake(pair: Pair, vertices: &[u32; 4], a: Body<'_>, b: Body<'_>) -> bool {
+    if a.is_all_awake() || b.is_all_awake() {
+        return true;
+    }
+    let (front, rear) = vertices.split_at(if pair.kind == PairKind::EdgeEdge { 2 } else { 1 });
+    let (first, second) = if pair.kind == PairKind::TriangleVertex { (b, a) } else { (a, b) };
+    first.has_awake(front) || second.has_awake(rear)
 }
 
 fn boxes_overlap(pair: Pair, a: Body<'_>, b: Body<'_>) -> bool {

@@ -8,6 +8,7 @@ mod obstacles;
 mod pair;
 mod rest;
 mod search;
+mod sleep;
 mod slip;
 mod tangle;
 mod touch;
@@ -21,6 +22,7 @@ use mesh_core::{ClothState, World3, par};
 use obstacles::Moving;
 use pair::{ClosestPoints, Sides};
 use rest::RestSheet;
+use sleep::Sleep;
 use slip::Slip;
 use std::collections::HashSet;
 use tangle::{Joined, Start, Tangle};
@@ -66,6 +68,7 @@ pub struct SurfaceContact {
     distances: Vec<f64>,
     touches: Vec<Touch>,
     slips: Vec<Slip>,
+    sleep: Sleep,
     /// What is tangled; absent where the start of a stage was found free.
     tangle: Option<Tangle>,
     /// Mass over h² by vertex (N/m).
@@ -99,6 +102,7 @@ impl SurfaceContact {
             distances: Vec::new(),
             touches: Vec::new(),
             slips: Vec::new(),
+            sleep: Sleep::default(),
             tangle: None,
             inertia: Vec::new(),
             x_t0: Vec::new(),
@@ -264,6 +268,7 @@ impl Contact for SurfaceContact {
         }
         self.h = stage.h;
         self.begin_tangle(stage.x_t0, times[1] - times[0]);
+        self.begin_sleep(stage.x_t0);
         self.target = target.to_vec();
         let mut target = target.to_vec();
         target.iter_mut().zip(&self.off_target).for_each(|(target, off)| *target += off);
@@ -292,6 +297,10 @@ impl Contact for SurfaceContact {
         self.find_slips(&near, &stage, times);
     }
 
+    fn rest(&mut self, sleepers: Option<&[bool]>) {
+        self.sleep.tell(sleepers);
+    }
+
     fn couples(&self) -> Vec<[u32; 2]> {
         let touches = self.touches.iter().flat_map(|touch| touch.sides.couples());
         let drives = self.tangle.iter().flat_map(|tangle| &tangle.drives);
@@ -304,15 +313,24 @@ impl Contact for SurfaceContact {
             + self.tangle.as_ref().map_or(0.0, |tangle| tangle.energy(x))
     }
 
+    fn add_gradient(&self, x: &[World3], gradient: &mut [World3]) {
+        self.touches.iter().for_each(|touch| touch.add_gradient(x, gradient));
+        self.slips.iter().for_each(|slip| slip.add_gradient(x, gradient));
+        self.sleep.add_gradient(gradient);
+        let drives = self.tangle.iter().flat_map(|tangle| &tangle.drives);
+        drives.for_each(|drive| drive.add_gradient(x, gradient));
+    }
+
     fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {
+        self.add_gradient(x, gradient);
         for touch in &self.touches {
-            touch.add_system(x, gradient, stiffness);
+            touch.add_stiffness(x, stiffness);
         }
         for slip in &self.slips {
-            slip.add_system(x, gradient, stiffness);
+            slip.add_stiffness(x, stiffness);
         }
         for drive in self.tangle.iter().flat_map(|tangle| &tangle.drives) {
-            drive.add_system(x, gradient, stiffness);
+            drive.add_stiffness(stiffness);
         }
     }
 

@@ -43,9 +43,21 @@ impl Obstacles {
             thickness.extend(std::iter::repeat_n(obstacle.thickness, n));
         }
         let moves = obstacles.iter().any(Obstacle::is_moving);
-        let bodies = obstacles.to_vec();
-        let motion = move |time| bodies.iter().flat_map(|body| body.positions(time)).collect();
-        let motion: Motion = Arc::new(motion);
+        // What stands still is placed once.
+        let bodies: Vec<(Obstacle, Option<Vec<World3>>)> = obstacles
+            .iter()
+            .map(|body| (body.clone(), (!body.is_moving()).then(|| body.positions(0.0))))
+            .collect();
+        let motion: Motion = Arc::new(move |time| {
+            let mut all = Vec::new();
+            for (body, still) in &bodies {
+                match still {
+                    Some(still) => all.extend_from_slice(still),
+                    None => all.extend(body.positions(time)),
+                }
+            }
+            all
+        });
         Ok(surface.map(|surface| Obstacles { surface, motion, moves, friction, thickness }))
     }
 }

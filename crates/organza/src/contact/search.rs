@@ -42,7 +42,10 @@ impl SurfaceContact {
             let drift = x.iter().zip(x_t1).map(|(from, to)| to - from).sum::<World3>() / n;
             let mut end = vec![World3::zeros(); x.len()];
             par::fill(&mut end, |i| x_t1[i] - drift);
-            let body = Body::moving(&self.cloth, x, &end, &radius);
+            let mut body = Body::moving(&self.cloth, x, &end, &radius);
+            if let Some([awake, _]) = self.sleep.awake() {
+                body = body.awake(awake);
+            }
             body.update_tree(&mut self.cloth_tree);
             let pairs = swept::near_within(body, &self.cloth_tree, |vertices, kind| {
                 let n_first = if kind == PairKind::EdgeEdge { 2 } else { 1 };
@@ -60,12 +63,16 @@ impl SurfaceContact {
                     .map(|v| moving.radius(v, settings) + off)
                     .collect();
                 let room = |v: u32| halves[v as usize];
-                let other = Body::moving(&moving.fixed.surface, &moving.now, &moving.then, &room);
+                let mut other =
+                    Body::moving(&moving.fixed.surface, &moving.now, &moving.then, &room);
                 if moving.tree_way[0] != moving.now || moving.tree_way[1] != moving.then {
                     other.update_tree(&mut moving.tree);
                     moving.tree_way = [moving.now.clone(), moving.then.clone()];
                 }
-                let body = Body::moving(&self.cloth, x, x_t1, &radius);
+                let mut body = Body::moving(&self.cloth, x, x_t1, &radius);
+                if let Some([cloth, bodies]) = self.sleep.awake() {
+                    (body, other) = (body.awake(cloth), other.awake(bodies));
+                }
                 body.update_tree(&mut self.cloth_tree);
                 let sides = ((body, &self.cloth_tree), (other, &moving.tree));
                 let pairs = swept::near_between(sides.0, sides.1);

@@ -57,13 +57,21 @@ impl Slip {
         self.most * friction(self.slip(x).norm(), self.y_stick)[0]
     }
 
-    pub(super) fn add_system(&self, x: &[World3], gradient: &mut [World3], to: &mut BlockMatrix) {
+    pub(super) fn add_gradient(&self, x: &[World3], gradient: &mut [World3]) {
+        let slip = self.slip(x);
+        let y = slip.norm();
+        if y > 0.0 {
+            let force = slip / y * (self.most * friction(y, self.y_stick)[1]);
+            self.sides.add_gradient(&self.weights, &force, gradient);
+        }
+    }
+
+    pub(super) fn add_stiffness(&self, x: &[World3], to: &mut BlockMatrix) {
         let slip = self.slip(x);
         let y = slip.norm();
         let [_, force, slope] = friction(y, self.y_stick);
         let (across, along, direction) =
             if y > 0.0 { (force / y, slope, slip / y) } else { (slope, slope, World3::zeros()) };
-        self.sides.add_gradient(&self.weights, &(direction * (self.most * force)), gradient);
         let stiffness =
             self.tangential * across + direction * direction.transpose() * (along - across);
         self.sides.add_stiffness(&self.weights, &(stiffness * self.most), to);

@@ -52,13 +52,31 @@ impl Touch {
         self.stiffness * penalty(self.gap(x), self.thickness)[0]
     }
 
-    pub(super) fn add_system(&self, x: &[World3], gradient: &mut [World3], to: &mut BlockMatrix) {
+    /// The gradient by the gap, along the normal (N), with the curvature of the penalty; none if they do not
+    /// repel each other.
+    fn force(&self, x: &[World3]) -> Option<(World3, f64)> {
         let [_, slope, curvature] = penalty(self.gap(x), self.thickness);
-        if slope < 0.0 {
-            let force = self.normal * (slope * self.stiffness);
+        (slope < 0.0).then(|| (self.normal * (slope * self.stiffness), curvature))
+    }
+
+    pub(super) fn add_gradient(&self, x: &[World3], gradient: &mut [World3]) {
+        if let Some((force, _)) = self.force(x) {
             self.sides.add_gradient(&self.weights, &force, gradient);
+        }
+    }
+
+    pub(super) fn add_stiffness(&self, x: &[World3], to: &mut BlockMatrix) {
+        if let Some((_, curvature)) = self.force(x) {
             let along = self.normal * self.normal.transpose() * (curvature * self.stiffness);
             self.sides.add_stiffness(&self.weights, &along, to);
+        }
+    }
+
+    /// Lists what the contact adds to the gradient of each vertex (N).
+    pub(super) fn collect_gradient(&self, x: &[World3], to: &mut Vec<(u32, World3)>) {
+        if let Some((force, _)) = self.force(x) {
+            let cloth = (0..4).filter(|&k| self.sides.is_cloth[k]);
+            to.extend(cloth.map(|k| (self.sides.vertices[k], force * self.weights[k])));
         }
     }
 }

@@ -57,8 +57,8 @@ pub struct Scene {
     pub recording: Recording,
 }
 
-/// Mesh sizes by what cameras see.
-#[derive(Debug, Clone, PartialEq)]
+/// How cameras see: for mesh sizes, and for restraint by view.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct View {
     /// The constants.
     pub settings: ViewSettings,
@@ -80,6 +80,8 @@ pub enum Thresholds {
     Speed(arps::Speed),
     /// By kinetic energy.
     Kinetic(arps::Kinetic),
+    /// By what cameras see.
+    View(sizing_view::PixelThresholds),
 }
 
 impl Scene {

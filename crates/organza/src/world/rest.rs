@@ -2,18 +2,33 @@
 
 use super::World;
 use crate::build::Garment;
+use crate::eyes::Eyes;
+use crate::obstacle::Obstacle;
 use crate::report::{RestraintSummary, StretchRange};
 use crate::scene::{Scene, Thresholds};
 use arps::{Held, Motion, Particle, Restraint};
 use cloth_dynamics::{RestReport, RestingPolicy};
 use mesh_core::ClothState;
+use sizing_view::pixel_speeds;
 use std::sync::Arc;
 
 /// Thresholds of every cloth, and bleeding.
 pub(super) struct Restraints {
     by_garment: Vec<Thresholds>,
     bleeding: Option<f64>,
+    /// Absent where no threshold depends on a camera.
+    sight: Option<Sight>,
 }
+
+/// What thresholds take of the cameras.
+struct Sight {
+    eyes: Eyes,
+    /// Speed of a pixel per frame for every vertex of the mesh (m/s), for the coming frame.
+    pixel_speeds: Arc<Vec<f64>>,
+}
+
+/// The frames whose pictures a motion shows in: that at its start and that at its end.
+const FRAMES_OF_MOTION: f64 = 2.0;
 
 impl Restraints {
     /// Those of a scene; `None` if nothing in it may rest.
@@ -21,7 +36,30 @@ impl Restraints {
         let own = |cloth: &crate::scene::Cloth| cloth.restraint.unwrap_or(scene.restraint);
         let by_garment: Vec<Thresholds> = scene.cloths.iter().map(own).collect();
         let any = by_garment.iter().any(|thresholds| *thresholds != Thresholds::None);
-        any.then_some(Restraints { by_garment, bleeding: scene.bleeding_s })
+        let looks = by_garment.iter().any(|thresholds| matches!(thresholds, Thresholds::View(_)));
+        let eyes = || {
+            let view = scene.view.clone().unwrap_or_default();
+            let eyes = Eyes::new(scene, &view)?.ahead(FRAMES_OF_MOTION);
+            Some(Sight { eyes, pixel_speeds: Arc::default() })
+        };
+        let sight = looks.then(eyes).flatten();
+        any.then_some(Restraints { by_garment, bleeding: scene.bleeding_s, sight })
+    }
+
+    /// Looks at the cloth through the cameras of the frame that begins at `time` (s); true if that has
+    /// changed any threshold.
+    fn look(&mut self, cloth: &ClothState, time: f64, obstacles: &[Obstacle]) -> bool {
+        let Some(sight) = &mut self.sight else { return false };
+        let samples = sight.eyes.samples(cloth, time, obstacles);
+        let frame = sight.eyes.frame_s();
+        let speeds = pixel_speeds(&cloth.x, &samples, frame, sight.eyes.settings());
+        let speeds =
+            speeds.expect("a window has its camera, and the scene's settings have been checked");
+        let changed = *sight.pixel_speeds != speeds;
+        if changed {
+            sight.pixel_speeds = Arc::new(speeds);
+        }
+        changed
     }
 
     /// The policy for a mesh.
@@ -31,7 +69,10 @@ impl Restraints {
             let garment = garments.partition_point(|garment| garment.panels.end <= *panel);
             corners.iter().for_each(|&i| of_vertex[i as usize] = garment as u32);
         }
-        let restraint = Arc::new(ByGarment { of_vertex, by_garment: self.by_garment.clone() });
+        let pixel_speeds = self.sight.as_ref().map(|sight| sight.pixel_speeds.clone());
+        let by_garment = self.by_garment.clone();
+        let pixel_speeds = pixel_speeds.unwrap_or_default();
+        let restraint = Arc::new(ByGarment { of_vertex, by_garment, pixel_speeds });
         RestingPolicy { restraint, bleeding: self.bleeding }
     }
 }
@@ -45,6 +86,18 @@ pub(super) struct Measured {
 }
 
 impl World {
+    /// Works out for the frame to come who may rest, where that depends on the cameras.
+    pub(crate) fn look_who_may_rest(&mut self) {
+        let time = self.time();
+        let Some(restraints) = &mut self.restraints else { return };
+        if restraints.look(&self.cloth, time, &self.obstacles)
+            && let Some(prepared) = &mut self.prepared
+        {
+            let policy = restraints.policy(&self.cloth, &self.garments);
+            prepared.system.change_restraint(policy, &mut self.cloth, time);
+        }
+    }
+
     /// Measures the cloth as it is at a time (s).
     pub(super) fn measure(&mut self, time: f64) -> Measured {
         let stretch = StretchRange::of(&self.cloth);
@@ -72,6 +125,8 @@ impl World {
 struct ByGarment {
     of_vertex: Vec<u32>,
     by_garment: Vec<Thresholds>,
+    /// By vertex (m/s); empty where no threshold depends on a camera.
+    pixel_speeds: Arc<Vec<f64>>,
 }
 
 impl Restraint for ByGarment {
@@ -80,11 +135,13 @@ impl Restraint for ByGarment {
             Thresholds::None => ().at(particle),
             Thresholds::Speed(speed) => speed.at(particle),
             Thresholds::Kinetic(kinetic) => kinetic.at(particle),
+            Thresholds::View(pixels) => pixels.at(particle, self.pixel_speeds[particle.index]),
         }
     }
 
     fn is_steady(&self) -> bool {
-        // All of them depend on nothing but the mass.
+        // They depend on nothing but the mass, and on what cameras see, which the system is told once a
+        // frame.
         true
     }
 }

@@ -85,15 +85,15 @@ impl Drive {
         0.5 * off.dot(&(self.stiffness * off))
     }
 
-    pub(in crate::contact) fn add_system(
-        &self,
-        x: &[World3],
-        gradient: &mut [World3],
-        to: &mut BlockMatrix,
-    ) {
+    pub(in crate::contact) fn add_gradient(&self, x: &[World3], gradient: &mut [World3]) {
         let force = self.stiffness * self.off(x);
-        for (a, &(i, weight)) in self.parts.iter().enumerate() {
+        for &(i, weight) in &self.parts {
             gradient[i as usize] += force * weight;
+        }
+    }
+
+    pub(in crate::contact) fn add_stiffness(&self, to: &mut BlockMatrix) {
+        for (a, &(i, weight)) in self.parts.iter().enumerate() {
             for &(j, other) in &self.parts[..=a] {
                 let (row, column) = (i.max(j) as usize, i.min(j) as usize);
                 let slot = to.pattern().slot(row, column).expect("there is room for contact");

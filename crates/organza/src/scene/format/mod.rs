@@ -152,6 +152,9 @@ impl Default for Recording {
 /// See [`RestraintFile::bleeding_s`], where the scene does not say (s).
 pub(crate) const BLEEDING_S: f64 = 0.5;
 
+/// See [`Thresholds::View`], where the scene does not say (m/s).
+pub(crate) const MOST_M_PER_S: f64 = 0.5;
+
 /// Values of keys that a scene leaves out.
 mod default {
     pub(super) fn frames_per_second() -> f64 {
@@ -183,6 +186,9 @@ mod default {
     }
     pub(super) fn self_contact() -> bool {
         true
+    }
+    pub(super) fn most_m_per_s() -> f64 {
+        super::MOST_M_PER_S
     }
     #[expect(clippy::unnecessary_wraps, reason = "the key may be null")]
     pub(super) fn bleeding_s() -> Option<f64> {

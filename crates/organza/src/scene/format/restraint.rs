@@ -53,6 +53,24 @@ pub enum Thresholds {
         /// Kinetic energy from which on it has full dynamics (J).
         full_j: f64,
     },
+    /// By what the cameras see: that of the scene and those of `view`, whose margin, window, occlusion and
+    /// factors count here, too; without `view`, its defaults do. Cloth that is out of the picture, or hidden,
+    /// rests sooner, and is awake before it comes into it.
+    View {
+        /// Motion in the picture up to which a vertex rests (pixels per frame).
+        rest_px_per_frame: f64,
+        /// Motion in the picture from which on it has full dynamics (pixels per frame).
+        full_px_per_frame: f64,
+        /// Speed up to which a vertex rests at most, however far it is from the picture (m/s).
+        #[serde(default = "default::most_m_per_s")]
+        most_m_per_s: f64,
+    },
+    /// As `view`, chosen so that restraint moves vertices that show by no more than this over the whole
+    /// scene.
+    AutomaticView {
+        /// The distance in the picture (pixels).
+        error_px: f64,
+    },
     /// Chosen so that restraint moves vertices by no more than this over the whole scene.
     Automatic {
         /// The distance (m).

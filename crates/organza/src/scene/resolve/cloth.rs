@@ -4,13 +4,14 @@ use super::super::check::At;
 use super::super::data::Cloth;
 use super::super::format::{ClothFile, FabricChoice, Multipliers, Remeshing, Spin};
 use super::super::limits::{self, MAX_DENSITY_KG_PER_M2, MAX_STIFFNESS};
+use super::restraint::Run;
 use super::{Context, beyond, mesh};
 use crate::fabric::{Fabric, OrthotropicFabric, preset, read_measured};
 
 pub(super) fn resolve(
     cloth: ClothFile,
     name: String,
-    duration: f64,
+    run: Run,
     at: &At<'_>,
     context: &mut Context<'_, '_>,
 ) -> Option<Cloth> {
@@ -54,7 +55,7 @@ pub(super) fn resolve(
         check_remeshing(remeshing, &at.key("remeshing"));
     }
     let restraint = cloth.restraint.and_then(|wish| {
-        super::restraint::thresholds(wish.thresholds, wish.law, duration, &at.key("restraint"))
+        super::restraint::thresholds(wish.thresholds, wish.law, run, &at.key("restraint"))
     });
     Some(Cloth {
         name,

@@ -5,12 +5,13 @@ use super::super::data::{Cloth, MeshSource, Obstacle, ObstacleSource};
 use super::super::format::{CharacterFile, ClothFile, CrowdFile};
 use super::super::limits;
 use super::super::motion::Transform;
+use super::restraint::Run;
 use super::{Context, cloth, obstacle};
 
 /// The characters of a crowd, each with its cloth, in a scene of some duration (s).
 pub(super) fn resolve(
     crowd: CrowdFile,
-    duration: f64,
+    run: Run,
     at: &At<'_>,
     context: &mut Context<'_, '_>,
 ) -> Option<Vec<(Obstacle, Cloth)>> {
@@ -37,7 +38,7 @@ pub(super) fn resolve(
         .cloths
         .iter()
         .enumerate()
-        .map(|(i, file)| worn(file, duration, &cloths.index(i), context))
+        .map(|(i, file)| worn(file, run, &cloths.index(i), context))
         .collect();
     context.in_crowd = false;
     let wear = wear.into_iter().collect::<Option<Vec<_>>>().filter(|wear| !wear.is_empty())?;
@@ -45,17 +46,12 @@ pub(super) fn resolve(
 }
 
 /// A cloth that a crowd wears.
-fn worn(
-    file: &ClothFile,
-    duration: f64,
-    at: &At<'_>,
-    context: &mut Context<'_, '_>,
-) -> Option<Cloth> {
+fn worn(file: &ClothFile, run: Run, at: &At<'_>, context: &mut Context<'_, '_>) -> Option<Cloth> {
     if file.name.is_some() {
         at.key("name")
             .complain("cloths of a crowd have the names of their characters: leave it out");
     }
-    let cloth = cloth::resolve(file.clone(), String::new(), duration, at, context)?;
+    let cloth = cloth::resolve(file.clone(), String::new(), run, at, context)?;
     if matches!(cloth.mesh, MeshSource::Garment(_)) {
         return Some(cloth);
     }

@@ -70,6 +70,8 @@ pub(super) fn resolve(
     let names = names(&file.cloths, given, "cloth", &top.key("cloths"));
     let handles = handle::resolve(file.handles, &names, &top.key("handles"));
     let duration = f64::from(file.frames) / file.frames_per_second;
+    let (frames, has_camera) = (file.frames, file.camera.is_some());
+    let run = restraint::Run { duration, frames, has_camera };
     let mut cloths: Option<Vec<_>> = {
         let resolved: Vec<_> = file
             .cloths
@@ -77,7 +79,7 @@ pub(super) fn resolve(
             .zip(names)
             .enumerate()
             .map(|(i, (cloth, name))| {
-                cloth::resolve(cloth, name, duration, &top.key("cloths").index(i), context)
+                cloth::resolve(cloth, name, run, &top.key("cloths").index(i), context)
             })
             .collect();
         resolved.into_iter().collect()
@@ -89,7 +91,7 @@ pub(super) fn resolve(
         check_wearers(cloths, obstacles, &top.key("cloths"));
     }
     if let Some(crowd) = file.crowd {
-        let members = crowd::resolve(crowd, duration, &top.key("crowd"), context)?;
+        let members = crowd::resolve(crowd, run, &top.key("crowd"), context)?;
         let taken = |name: &String| {
             let obstacles = obstacles.iter().flatten().any(|obstacle| obstacle.name == *name);
             obstacles || cloths.iter().flatten().any(|cloth| cloth.name == *name)
@@ -116,7 +118,7 @@ pub(super) fn resolve(
     let restraint = file.restraint.and_then(|wish| {
         let at = top.key("restraint");
         restraint::check_bleeding(wish.bleeding_s, &at);
-        restraint::thresholds(wish.thresholds, wish.law, duration, &at)
+        restraint::thresholds(wish.thresholds, wish.law, run, &at)
     });
     Some(Scene {
         name: file.name.unwrap_or_else(|| default_name.to_owned()),

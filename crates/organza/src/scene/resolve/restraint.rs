@@ -5,12 +5,24 @@ use super::super::data::Thresholds;
 use super::super::format::{self, Law};
 use super::super::limits;
 use arps::{Automatic, Kinetic, Speed, ThresholdError};
+use sizing_view::PixelThresholds;
 
-/// The policy of a key `restraint`, for a scene of some length (s); none if it was complained of.
+/// What thresholds depend on of the scene.
+#[derive(Clone, Copy)]
+pub(super) struct Run {
+    /// Simulated time (s).
+    pub(super) duration: f64,
+    /// Frames of it.
+    pub(super) frames: u32,
+    /// Whether there is a camera.
+    pub(super) has_camera: bool,
+}
+
+/// The policy of a key `restraint`; none if it was complained of.
 pub(super) fn thresholds(
     thresholds: format::Thresholds,
     law: Law,
-    duration: f64,
+    run: Run,
     at: &At<'_>,
 ) -> Option<Thresholds> {
     let law = match law {
@@ -35,13 +47,38 @@ pub(super) fn thresholds(
         }
         format::Thresholds::Automatic { error_m } => {
             at.key("automatic.error_m").not_negative(error_m, limits::MAX_COORDINATE_M, "m");
-            let found = Automatic::for_error(error_m, duration);
+            let found = Automatic::for_error(error_m, run.duration);
             found.and_then(|found| {
                 let (v_r, v_f) = (found.speed.v_r(), found.speed.v_f());
                 Speed::with_law(law, v_r, v_f).map(Thresholds::Speed)
             })
         }
+        format::Thresholds::View { rest_px_per_frame, full_px_per_frame, most_m_per_s } => {
+            let at = at.key("view");
+            let limit = limits::MAX_PICTURE_PX.into();
+            at.key("rest_px_per_frame").not_negative(rest_px_per_frame, limit, "pixels");
+            at.key("full_px_per_frame").not_negative(full_px_per_frame, limit, "pixels");
+            at.key("most_m_per_s").not_negative(most_m_per_s, limits::MAX_SPEED_M_PER_S, "m/s");
+            let found =
+                PixelThresholds::new(law, rest_px_per_frame, full_px_per_frame, most_m_per_s);
+            found.map(Thresholds::View)
+        }
+        format::Thresholds::AutomaticView { error_px } => {
+            let limit = limits::MAX_PICTURE_PX.into();
+            at.key("automatic-view.error_px").not_negative(error_px, limit, "pixels");
+            // The same bound in pixels, with a frame for the unit of time.
+            let found = Automatic::for_error(error_px, f64::from(run.frames));
+            found.and_then(|found| {
+                let (rest, full) = (found.speed.v_r(), found.speed.v_f());
+                let most = format::MOST_M_PER_S;
+                PixelThresholds::new(law, rest, full, most).map(Thresholds::View)
+            })
+        }
     };
+    if matches!(made, Ok(Thresholds::View(_))) && !run.has_camera {
+        at.complain("the scene has no `camera` to look through");
+        return None;
+    }
     // What is wrong with one value alone has been said.
     let told = |error: &ThresholdError| !matches!(error, ThresholdError::Value { .. });
     made.inspect_err(|error| {

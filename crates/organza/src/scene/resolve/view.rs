@@ -170,9 +170,6 @@ fn check_camera(camera: &Camera, scene_up: [f64; 3], at: &At<'_>) -> Option<sizi
     made.ok()
 }
 
-/// Farther ahead no camera is guessed.
-const MAX_PREDICTED_FRAMES: f64 = 1000.0;
-
 /// The constants of sizing by view.
 pub(super) fn settings(
     view: ViewFile,
@@ -211,13 +208,6 @@ pub(super) fn settings(
         })
         .collect();
     let more_cameras = more.into_iter().collect::<Option<_>>()?;
-    if view.predicted && settings.window > MAX_PREDICTED_FRAMES {
-        at.key("window_frames").complain(beyond(
-            settings.window,
-            MAX_PREDICTED_FRAMES,
-            "frames where the camera is `predicted`",
-        ));
-    }
     let (occlusion, predicted) = (view.occlusion, view.predicted);
     has_camera.then_some(View { settings, occlusion, predicted, more_cameras })
 }
