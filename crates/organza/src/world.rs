@@ -4,6 +4,7 @@ mod bodies;
 mod flow;
 mod rest;
 mod skipped;
+mod step;
 mod tangled;
 #[cfg(test)]
 mod tests;
@@ -356,9 +357,7 @@ impl World {
             crossings = self.crossings(frame);
         }
         self.frame = frame;
-        let looking = Instant::now();
-        self.look_who_may_rest();
-        seconds.view += looking.elapsed().as_secs_f64();
+        seconds.view += self.look_who_may_rest();
         let yielded = self.tangled.yielding.len();
         self.tangled.was_at_work = self.tangled.matters();
         self.note_crossings(crossings.as_ref());
@@ -388,69 +387,6 @@ impl World {
     /// True if there is any cloth.
     pub fn has_cloth(&self) -> bool {
         !self.garments.is_empty()
-    }
-
-    /// One step; a failing one is redone in halves.
-    fn step(
-        &mut self,
-        step: Step,
-        frame: u64,
-        depth: u32,
-        solve: &mut SolveReport,
-        retries: &mut u32,
-        seconds: &mut Seconds,
-    ) -> Result<(), StepError> {
-        let clock = Instant::now();
-        self.bring_obstacles(step, frame)?;
-        self.prepare().map_err(|e| StepError::TooLarge { frame, message: e.to_string() })?;
-        seconds.build += clock.elapsed().as_secs_f64();
-        let Prepared { system, names } = self.prepared.as_mut().expect("prepare() has run");
-        self.handles.take_hold(&self.cloth, names, step.time);
-        system.accept_rise(depth >= RISE_DEPTH);
-        let constraints = |time: f64| self.handles.constraints(names, time);
-        let dry = (!self.wet.is_empty()).then(|| self.cloth.m.clone());
-        for (mass, wet) in self.cloth.m.iter_mut().zip(&self.wet) {
-            *mass += wet;
-        }
-        let done = self.integrator.advance(
-            &mut self.cloth,
-            system,
-            self.solver.as_mut(),
-            &constraints,
-            &self.newton,
-            step,
-        );
-        if let Some(dry) = dry {
-            self.cloth.m = dry;
-        }
-        match done {
-            Ok(report) => {
-                solve.add(&report);
-                Ok(())
-            }
-            Err(source) => {
-                if self.tangled.matters() {
-                    // The contact may have found it free in the meantime.
-                    self.prepared = None;
-                }
-                if let SolveError::Caught { place, .. } = source
-                    && depth >= YIELD_DEPTH
-                    && self.yield_at(place)
-                {
-                    *retries += 1;
-                    return self.step(step, frame, depth, solve, retries, seconds);
-                }
-                if depth == MAX_HALVINGS {
-                    return Err(StepError::Solve { frame, time: step.time, h: step.h, source });
-                }
-                *retries += 1;
-                let h = 0.5 * step.h;
-                for time in [step.time, step.time + h] {
-                    self.step(Step { time, h }, frame, depth + 1, solve, retries, seconds)?;
-                }
-                Ok(())
-            }
-        }
     }
 
     /// Brings the obstacles that are there at the end of a step, and takes away the others.

@@ -115,8 +115,8 @@ fn unknown_and_missing_keys() {
     cloth_complains(
         "densty: 1",
         "s.json5:2:40: cloths[0].densty: unknown key `densty`, expected one of name, mesh, transform, \
-         fabric, panel_fabrics, thicken, multipliers, thickness_m, strain_limits, bending, damping, initial_velocity, \
-         initial_spin, remeshing, restraint",
+         fabric, panel_fabrics, thicken, multipliers, thickness_m, strain_limits, tension_field, bending, damping, \
+         initial_velocity, initial_spin, remeshing, restraint",
     );
     cloth_complains(
         "damping: {stiffness: 1}",

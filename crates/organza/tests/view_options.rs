@@ -63,7 +63,7 @@ fn a_camera_that_is_guessed_knows_its_past_alone() {
     assert_eq!(known.cloth, guessed.cloth);
 
     // Neither is a cut foreseen, at 0.16 s, nor missed afterwards.
-    let cut = "camera: {}, shots: [
+    let cut = "camera: {position: [0.5, 0.5, 1.5], target: [0.5, 0.5, 9], up: [0, 1, 0]}, shots: [
         {keyframes: [{time_s: 0, position: [0.5, 0.5, 1.5], target: [0.5, 0.5, 9], up: [0, 1, 0]}]},
         {start_s: 0.16, keyframes:
             [{time_s: 0.16, position: [0.5, 0.5, 1.5], target: [0.5, 0.5, 0], up: [0, 1, 0]}]}],";

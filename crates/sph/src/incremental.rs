@@ -13,6 +13,7 @@ use crate::grid::Point;
 use crate::lanes::{self, Four, LANES};
 use crate::neighbours::Neighbours;
 use crate::pair::{Laws, Side, transpose};
+use crate::place::{Place, named, pick, squared_distance};
 use crate::state::State;
 use crate::sweep::{self, Marked};
 use crate::walls::WallState;
@@ -468,42 +469,4 @@ impl Changes {
         self.touched_walls.clear();
         self.changed_walls.clear();
     }
-}
-
-/// One place or four.
-struct Place<N>([N; 3]);
-
-impl<S: Simd> Place<Four<S>> {
-    #[inline(always)]
-    fn splat(simd: S, p: &Point) -> Self {
-        Place([0, 1, 2].map(|k| Four::splat(simd, p[k])))
-    }
-
-    #[inline(always)]
-    fn gather(simd: S, list: &[Point], at: [u32; LANES]) -> Self {
-        let [x, y, z, _] = transpose(simd, pick(list, at));
-        Place([x, y, z])
-    }
-
-    #[inline(always)]
-    fn squared_distance(&self, other: &Self) -> Four<S> {
-        let d = [0, 1, 2].map(|k| self.0[k] - other.0[k]);
-        d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
-    }
-}
-
-fn squared_distance(p: &Point, q: &Point) -> f64 {
-    let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-    d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
-}
-
-/// Up to four numbers of particles, filled up with `filler`.
-#[inline(always)]
-fn named(at: &[u32], filler: u32) -> [u32; LANES] {
-    [0, 1, 2, 3].map(|l| at.get(l).copied().unwrap_or(filler))
-}
-
-#[inline(always)]
-fn pick(list: &[Point], at: [u32; LANES]) -> [&Point; LANES] {
-    at.map(|j| &list[j as usize])
 }

@@ -70,6 +70,7 @@ pub mod measure;
 mod motion;
 mod neighbours;
 mod pair;
+mod place;
 mod report;
 mod restraint;
 pub mod scenes;

@@ -11,6 +11,7 @@ use cloth_dynamics::{RestReport, RestingPolicy};
 use mesh_core::ClothState;
 use sizing_view::pixel_speeds;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Thresholds of every cloth, and bleeding.
 pub(super) struct Restraints {
@@ -86,16 +87,21 @@ pub(super) struct Measured {
 }
 
 impl World {
-    /// Works out for the frame to come who may rest, where that depends on the cameras.
-    pub(crate) fn look_who_may_rest(&mut self) {
+    /// Works out for the frame to come who may rest, where that depends on the cameras; how long that
+    /// took (s).
+    pub(crate) fn look_who_may_rest(&mut self) -> f64 {
         let time = self.time();
-        let Some(restraints) = &mut self.restraints else { return };
+        let Some(restraints) = self.restraints.as_mut().filter(|all| all.sight.is_some()) else {
+            return 0.0;
+        };
+        let clock = Instant::now();
         if restraints.look(&self.cloth, time, &self.obstacles)
             && let Some(prepared) = &mut self.prepared
         {
             let policy = restraints.policy(&self.cloth, &self.garments);
             prepared.system.change_restraint(policy, &mut self.cloth, time);
         }
+        clock.elapsed().as_secs_f64()
     }
 
     /// Measures the cloth as it is at a time (s).
