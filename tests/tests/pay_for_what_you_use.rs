@@ -33,6 +33,7 @@ fn absent_parts_are_absent() {
         "view",
         "wind",
         "strain limits",
+        "tension field",
         "handles",
         "contact",
         "restraint",
@@ -56,6 +57,7 @@ fn absent_parts_are_absent() {
     let report = full.advance().unwrap();
     let idle = [
         "sizing by obstacles: no mesh size depends on them",
+        "tension field: all cloth resists compression",
         "fluid: none in the scene",
         "untangling: nothing passes through anything",
     ];

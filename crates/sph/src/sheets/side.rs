@@ -212,6 +212,9 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    /// How far the point stays off (m).
+    const FLOOR: f64 = 0.05;
+
     /// Signed volume of the tetrahedron of a point and a triangle: its sign is the side.
     fn side(x: &Vector3<f64>, [a, b, c]: &[Vector3<f64>; 3]) -> f64 {
         (b - a).cross(&(c - a)).dot(&(x - a))
@@ -221,8 +224,8 @@ mod tests {
         /// Two large triangles that move at random: a point between them stays between them.
         #[test]
         fn points_stay_on_their_sides(
-            height in 0.02..0.3f64,
-            gap in 0.01..0.3f64,
+            height in 1.1 * FLOOR..0.3f64,
+            gap in 1.1 * FLOOR..0.3f64,
             ways in prop::collection::vec(-0.2..0.2f64, 9),
         ) {
             let far = 20.0;
@@ -230,17 +233,16 @@ mod tests {
                 [[-far, -far, z], [far, -far, z], [0.0, far, z]].map(Vector3::from)
             };
             let up = |z: f64| Vector3::new(0.0, 0.0, z);
-            // The upper one never passes the lower.
+            // The upper one leaves room on both sides of the point.
             let lower = [ways[0], ways[1], ways[2]];
-            let upper = [0, 1, 2].map(|k| lower[k] + ways[k + 3].max(-0.5 * (height + gap)));
+            let upper = [0, 1, 2].map(|k| lower[k] + ways[k + 3].max(2.1 * FLOOR - height - gap));
             let triangles = [
                 Moving { name: 0, from: plane(0.0), ways: lower.map(up) },
                 Moving { name: 1, from: plane(height + gap), ways: upper.map(up) },
             ];
             let start = up(height);
             let way = Vector3::new(ways[6], ways[7], 5.0 * ways[8]);
-            // There is room for it on both sides.
-            let found = path(start, way, &triangles, 0.005, 10.0);
+            let found = path(start, way, &triangles, FLOOR, 10.0);
             let end = found.map_or(start + way, |path| {
                 assert!(!path.is_squeezed, "{path:?}");
                 path.end
