@@ -325,12 +325,10 @@ impl World {
                 // Where flips and collapses took cloth through something, only splits are made next
                 // time; in the end, everywhere.
                 let mut hold = Vec::new();
-                for round in 0..=HOLD_ROUNDS {
+                for round in 0.. {
                     crossings = self.crossings(frame);
-                    let Some(found) = crossings.as_ref().filter(|_| done.report.n_edits() > 0)
-                    else {
-                        break;
-                    };
+                    let may_go_on = done.report.n_edits() > 0 && round <= HOLD_ROUNDS;
+                    let Some(found) = crossings.as_ref().filter(|_| may_go_on) else { break };
                     if tangled_before > 0.0 && self.contour_length(frame) <= tangled_before {
                         break;
                     }
