@@ -14,7 +14,7 @@ fn world(extra: &str) -> World {
         "" => text.replace("EXTRA_CLOTH", ""),
         _ => text.replace(
             "EXTRA_CLOTH",
-            ", strain_limits: [0.9, 1.1], remeshing: { size_m: { min: 0.02, max: 0.1 } }",
+            ", strain_limits: [0.9, 1.1], tension_field: true, remeshing: { size_m: { min: 0.02, max: 0.1 } }",
         ),
     };
     let options = LoadOptions::default();
@@ -57,7 +57,6 @@ fn absent_parts_are_absent() {
     let report = full.advance().unwrap();
     let idle = [
         "sizing by obstacles: no mesh size depends on them",
-        "tension field: all cloth resists compression",
         "fluid: none in the scene",
         "untangling: nothing passes through anything",
     ];

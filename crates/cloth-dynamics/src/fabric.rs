@@ -45,7 +45,8 @@ pub struct Fabric {
     /// Bounds on the stretch, if any.
     pub strain_limits: Option<StrainLimits>,
     /// Lets go of compression beyond what buckles within a triangle, as by wrinkles that are finer than
-    /// the mesh (Pipkin1986, Koh2014 §5). The lower bound on the stretch then has no meaning.
+    /// the mesh (Pipkin1986, Koh2014 §5); a lower bound on the stretch would get in the way. Without effect
+    /// where the membrane has no stiffness at rest in some direction.
     pub tension_field: bool,
     /// Damping.
     pub damping: Damping,

@@ -14,6 +14,7 @@
 use std::error::Error;
 use std::path::Path;
 
+use io_mcap::Checkpoint;
 use mesh_core::geometry::inverse_edges;
 use mesh_core::{ClothState, Material2, TriangleId, World3};
 use organza::checkpoint::{restore, save};
@@ -85,14 +86,7 @@ fn error(path: &Path, [first, last, every]: [u64; 3], horizon: u64) -> Outcome<s
     for frame in 0..=last {
         if frame >= first && (frame - first) % every == 0 {
             let start = save(&mut along);
-            let ahead = |loaded: &Loaded| -> Outcome<World> {
-                let mut world = World::new(loaded)?;
-                restore(&mut world, &start)?;
-                for _ in 0..horizon {
-                    world.advance()?;
-                }
-                Ok(world)
-            };
+            let ahead = |loaded: &Loaded| ahead(loaded, &start, horizon);
             let truth = ahead(&adaptive)?;
             let eye = Eye::new(&view, truth.time());
             errors.push(eye.rms(&truth.cloth, &ahead(&view)?.cloth));
@@ -128,6 +122,16 @@ fn error(path: &Path, [first, last, every]: [u64; 3], horizon: u64) -> Outcome<s
     }))
 }
 
+/// A run some frames after it had a state.
+fn ahead(loaded: &Loaded, state: &Checkpoint, frames: u64) -> Outcome<World> {
+    let mut world = World::new(loaded)?;
+    restore(&mut world, state)?;
+    for _ in 0..frames {
+        world.advance()?;
+    }
+    Ok(world)
+}
+
 /// Distances of runs from the truth some frames after all had the state that the run along has at the
 /// start, over the clothes of characters that move.
 fn against(
@@ -147,14 +151,7 @@ fn against(
         along.advance()?;
     }
     let state = save(&mut along);
-    let ahead = |loaded: &Loaded| -> Outcome<World> {
-        let mut world = World::new(loaded)?;
-        restore(&mut world, &state)?;
-        for _ in 0..horizon {
-            world.advance()?;
-        }
-        Ok(world)
-    };
+    let ahead = |loaded: &Loaded| ahead(loaded, &state, horizon);
     let loaded = variant(truth)?;
     let truth = ahead(&loaded)?;
     let moves = |name: &str| truth.obstacles.iter().any(|o| o.name == name && o.is_moving());

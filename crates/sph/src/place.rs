@@ -27,6 +27,7 @@ impl<S: Simd> Place<Four<S>> {
     }
 }
 
+#[inline(always)]
 pub(crate) fn squared_distance(p: &Point, q: &Point) -> f64 {
     let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
     d[0] * d[0] + d[1] * d[1] + d[2] * d[2]

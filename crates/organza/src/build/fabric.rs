@@ -4,7 +4,7 @@ use super::BuildError;
 use crate::fabric::Fabric as Material;
 use crate::scene;
 use crate::scene::format::BendingModel as SceneBending;
-use cloth_dynamics::law::{Bending, MeasuredBending, MeasuredMembrane, Membrane, Quadratic};
+use cloth_dynamics::law::{Bending, Law, MeasuredBending, MeasuredMembrane, Membrane, Quadratic};
 use cloth_dynamics::{BendingModel, Damping, Fabric, StrainLimits};
 
 /// The fabric of a cloth that is made of `material`.
@@ -46,6 +46,12 @@ pub(super) fn fabric(
             (fabric.density, Membrane::Measured(membrane), Some(Bending::Measured(bending)))
         }
     };
+    if cloth.tension_field && membrane.at_rest().try_inverse().is_none() {
+        warnings.push(format!(
+            "cloth `{}`: `tension_field` has no effect on a fabric without stiffness in some direction",
+            cloth.name
+        ));
+    }
     Ok(Fabric {
         density: density * scale.density,
         membrane,

@@ -94,9 +94,9 @@ impl Meeting {
         }
     }
 
-    /// Where all corners are at a time (s): vertices of the cloth, then those of the bodies (m).
-    fn corners(&self, cloth: &ClothState, obstacles: &[Obstacle], time: f64) -> Vec<World3> {
-        let mut corners = if self.has_cloth { cloth.x.clone() } else { Vec::new() };
+    /// Where all corners are at a time (s): vertices of the cloth, at `x`, then those of the bodies (m).
+    fn corners(&self, x: &[World3], obstacles: &[Obstacle], time: f64) -> Vec<World3> {
+        let mut corners = if self.has_cloth { x.to_vec() } else { Vec::new() };
         for &k in &self.obstacles {
             corners.extend(obstacles[k].positions(time));
         }
@@ -111,7 +111,7 @@ impl Meeting {
         obstacles: &[Obstacle],
         time: f64,
     ) -> Result<&mut Sheets, FluidError> {
-        let corners = self.corners(cloth, obstacles, time);
+        let corners = self.corners(&cloth.x, obstacles, time);
         let mut sheets = match self.sheets.take() {
             Some(sheets) => sheets,
             None => {
@@ -197,11 +197,8 @@ impl Meeting {
         obstacles: &[Obstacle],
         (time, h): (f64, f64),
     ) -> Result<(), FluidError> {
-        let mut from = if self.has_cloth { start.to_vec() } else { Vec::new() };
-        for &k in &self.obstacles {
-            from.extend(obstacles[k].positions(time));
-        }
-        let to = self.corners(cloth, obstacles, time + h);
+        let from = self.corners(start, obstacles, time);
+        let to = self.corners(&cloth.x, obstacles, time + h);
         let Some(sheets) = &mut self.sheets else { return Ok(()) };
         sheets.move_between(&from, &to)?;
         self.done.add(&fluid.advance_among(h, sheets)?);

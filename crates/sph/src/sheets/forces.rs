@@ -7,10 +7,10 @@
 //! has, that is, its slope is ρ₀ per spacing: c = 1/2 + 2f, A = 1/4f. The force is the gradient of the
 //! energy, and the surface has it the other way round, at the point that touches.
 
-use super::near::squared_distance;
 use super::{FARTHEST, Sheets, triangle};
 use crate::grid::Point;
 use crate::pair::Laws;
+use crate::place::squared_distance;
 use nalgebra::Vector3;
 
 /// A particle and the point of the surfaces that is closest to it.

@@ -1,6 +1,7 @@
 //! Which samples of surfaces are near which particles.
 
 use crate::grid::{Grid, Point};
+use crate::place::squared_distance;
 
 /// How much farther than the support samples are listed, in spacings (1).
 const MARGIN: f64 = 0.5;
@@ -79,10 +80,4 @@ impl Near {
     pub(super) fn samples(&self, k: usize) -> &[u32] {
         &self.which[self.start[k] as usize..self.start[k + 1] as usize]
     }
-}
-
-#[inline(always)]
-pub(super) fn squared_distance(p: &Point, q: &Point) -> f64 {
-    let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-    d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
 }

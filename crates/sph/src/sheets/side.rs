@@ -6,10 +6,10 @@
 //! distance is never zero on the way. Where it has become small the particle stops coming closer, which
 //! is an inelastic impact.
 
-use super::near::squared_distance;
 use super::{FARTHEST, Sheets, triangle};
 use crate::grid::Point;
 use crate::motion::Moved;
+use crate::place::squared_distance;
 use crate::settings::Bounds;
 use crate::state::State;
 use nalgebra::Vector3;
