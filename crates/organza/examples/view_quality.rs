@@ -156,6 +156,11 @@ fn against(
     let truth = ahead(&loaded)?;
     let moves = |name: &str| truth.obstacles.iter().any(|o| o.name == name && o.is_moving());
     let moving: Vec<_> = truth.garments.iter().filter(|garment| moves(&garment.name)).collect();
+    if moving.is_empty() {
+        return Err(
+            "no character that moves has the name of its cloth, as those of a crowd do".into()
+        );
+    }
     let counts = |panel: u32| moving.iter().any(|garment| garment.panels.contains(&panel));
     let eye = Eye::new(&loaded, truth.time());
     let mut errors = Vec::new();
