@@ -45,6 +45,10 @@ pub trait Contact: Send + Sync {
     /// Adds the gradient of [`Contact::energy`] (N).
     fn add_gradient(&self, x: &[World3], gradient: &mut [World3]);
 
+    /// Adds by vertex the most that friction in this stage may hold between what stands still, so vertices
+    /// with a mark and other things that do not move (N).
+    fn add_grip(&self, _stands: &[bool], _grip: &mut [f64]) {}
+
     /// Adds gradient (N) and positive semi-definite stiffness (N/m); the pattern has room for
     /// [`Contact::couples`].
     fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix);

@@ -32,6 +32,8 @@ pub(crate) struct Inertia<'a> {
     pub time: f64,
     /// Vertices that do not move from where the start has them.
     pub fixed: &'a [bool],
+    /// Of these, those that do not move either to keep things apart.
+    pub pinned: &'a [bool],
     /// Restrained kinetic energies in the place of the plain ones.
     pub restrained: Option<Restrained<'a>>,
 }
@@ -413,7 +415,7 @@ impl Newton<'_> {
         let Some(contact) = &mut self.system.contact else { return Ok(()) };
         let clock = Instant::now();
         let caught = |Blocked { place }| SolveError::Caught { time: self.inertia.time, place };
-        self.report.shortened = contact.secure(&mut self.x, self.inertia.fixed).map_err(caught)?;
+        self.report.shortened = contact.secure(&mut self.x, self.inertia.pinned).map_err(caught)?;
         self.report.touches = contact.n_touches();
         let is_bent = self.report.shortened > 0 && !self.system.accepts_rise;
         let potential = |x: &[World3]| self.inertia.potential(self.system, x);

@@ -172,6 +172,14 @@ impl System {
         }
     }
 
+    /// Puts vertices to rest at the end of a step that began with these velocities (m/s).
+    pub(crate) fn put_to_rest(&mut self, cloth: &mut ClothState, before: &[World3], step: Step) {
+        if let Some(mut resting) = self.resting.take() {
+            resting.put_to_rest(cloth, self, before, step);
+            self.resting = Some(resting);
+        }
+    }
+
     /// Wakes all vertices, whose velocities must have been [settled](System::settle): something other
     /// than these forces has changed velocities or masses.
     pub fn wake_all(&mut self) {

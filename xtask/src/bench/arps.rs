@@ -166,13 +166,13 @@ fn poke(context: &Context, report: &mut Report) -> Result<(), Failure> {
 }
 
 /// Frames until a tenth of the crowd dances.
-const STAND: usize = 50;
+const STAND: usize = 75;
 /// Frames from a common state to the comparison of two runs.
 const HORIZON: usize = 3;
 
 /// The crowd of which a tenth moves.
 fn crowd(context: &Context, report: &mut Report) -> Result<(), Failure> {
-    let (count, frames) = if context.options.quick { (20, STAND + 10) } else { (100, 100) };
+    let (count, frames) = if context.options.quick { (20, STAND + 10) } else { (100, 125) };
     let count = format!("crowd.count={count}");
     let restrained = simulate(context, "resting-crowd", frames, "restrained", &[&count])?;
     let plain = simulate(context, "resting-crowd", frames, "plain", &[&count, "restraint=null"])?;
@@ -188,8 +188,7 @@ fn crowd(context: &Context, report: &mut Report) -> Result<(), Failure> {
     );
     let figure = Figure::exact(ratio(STAND, frames), "1", &note);
     report.add("arps.resting_crowd.speedup", figure);
-    let note =
-        "The same over the whole run, of which all clothes fall into place in the first half.";
+    let note = "The same over the whole run, of which all clothes fall into place in the first three fifths.";
     report.add("arps.resting_crowd.speedup_whole", Figure::exact(ratio(0, frames), "1", note));
     let scene = context.root.join("scenes/resting-crowd.json5").display().to_string();
     let variants = [

@@ -35,7 +35,9 @@ impl TimeIntegrator for ImplicitEuler {
             constraints: constraints(time),
         };
         let StageEnd { x, v, report } = solve_stage(cloth, system, solver, settings, &start)?;
-        (cloth.x, cloth.v) = (x, v);
+        cloth.x = x;
+        let before = std::mem::replace(&mut cloth.v, v);
+        system.put_to_rest(cloth, &before, Step { time: time_t0, h });
         Ok(report)
     }
 }

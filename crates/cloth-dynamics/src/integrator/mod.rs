@@ -113,8 +113,15 @@ pub(crate) fn plain_stage(
         system.make_room_for_contact()?;
     }
     let contact_s = clock.elapsed().as_secs_f64();
-    let inertia =
-        Inertia { mass: &cloth.m, target: &target, h, time, fixed: &fixed, restrained: None };
+    let inertia = Inertia {
+        mass: &cloth.m,
+        target: &target,
+        h,
+        time,
+        fixed: &fixed,
+        pinned: &fixed,
+        restrained: None,
+    };
     let Minimum { x, mut report, .. } = minimise(system, solver, &inertia, &starts, settings)?;
     report.contact_s += contact_s;
     let v = x.iter().zip(base).map(|(x, base)| (x - base) / h).collect();

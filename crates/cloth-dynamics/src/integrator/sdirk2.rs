@@ -79,7 +79,8 @@ impl TimeIntegrator for Sdirk2 {
             v_2[i] = (x_2[i] - cloth.x[i]) / h;
         }
         cloth.x = x_2;
-        cloth.v = v_2;
+        let before = std::mem::replace(&mut cloth.v, v_2);
+        system.put_to_rest(cloth, &before, Step { time, h });
         Ok(report)
     }
 }

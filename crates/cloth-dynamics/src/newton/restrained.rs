@@ -29,9 +29,6 @@ pub(crate) struct Restrained<'a> {
     pub guess: &'a [World3],
     /// Kinetic energies; what is fixed rests for ever.
     pub conjugates: &'a [Conjugate],
-    /// Error of a momentum that rests or is restrained at which the stage is converged, as a share of
-    /// that up to which the vertex rests (1).
-    pub fine: f64,
 }
 
 impl Restrained<'_> {
@@ -55,8 +52,9 @@ impl Restrained<'_> {
 /// Share of the tolerance to which a convex problem is solved.
 const INNER: f64 = 0.5;
 /// Share of the greatest speed by which momenta over mass may be off at rest and in transition, as long
-/// as that is less than a share of what may rest.
+/// as that is within these shares of what may rest.
 const COARSE: [f64; 2] = [0.1, 0.3];
+const FINE: f64 = 1e-4;
 const ROUGH: f64 = 0.5;
 /// The most linear systems for one direction; what is left then is for the next. Few need more than ten:
 /// to begin again before the problem is solved costs more, since the forces of the next point are those of
@@ -129,7 +127,7 @@ impl Newton<'_> {
             // velocity.
             let coarse = if from[i] == zero { COARSE[0] } else { COARSE[1] };
             let share = coarse * fastest * held.mass() / held.p_r();
-            most.min(share.clamp(restrained.fine, ROUGH) * held.p_r())
+            most.min(share.clamp(FINE, ROUGH) * held.p_r())
         };
         let mut tolerance: Vec<f64> = (0..n).map(tolerance).collect();
         let error =

@@ -77,7 +77,15 @@ impl Problem {
             resting[i] = target[i];
         }
         let starts = [resting, target.clone()];
-        let inertia = Inertia { mass: &cloth.m, target, h: *h, time: 0.0, fixed, restrained: None };
+        let inertia = Inertia {
+            mass: &cloth.m,
+            target,
+            h: *h,
+            time: 0.0,
+            fixed,
+            pinned: fixed,
+            restrained: None,
+        };
         let start =
             starts.iter().map(|x| inertia.potential(system, x)).fold(f64::INFINITY, f64::min);
         let mut solver =
@@ -189,6 +197,7 @@ fn a_step_of_a_shifted_matrix_is_not_convergence() {
         h: problem.h,
         time: 0.0,
         fixed: &problem.fixed,
+        pinned: &problem.fixed,
         restrained: None,
     };
     let mut solver = SolverKind::SparseCholesky.build(LinearSettings::default());

@@ -1,8 +1,9 @@
 //! Who goes to sleep after a stage.
 
+use super::friction::beyond;
 use super::local::WholeStage;
 use super::part_contact::gradient_of;
-use super::{Patch, REACH, Resting, SHRINK, STATIC};
+use super::{Patch, REACH, Resting, SHRINK};
 use crate::integrator::StageStart;
 use crate::system::System;
 use arps::Rest;
@@ -36,6 +37,7 @@ impl Resting {
         let gradient = self.elastic_gradient(system, x);
         let contact = system.contact.as_deref();
         let touching = contact.map(|contact| gradient_of(contact, x));
+        let grip = self.grip(contact, whole);
         let mut is_wanted = vec![false; n];
         wanted.iter().for_each(|&i| is_wanted[i as usize] = true);
         for i in 0..n {
@@ -47,9 +49,13 @@ impl Resting {
             } else {
                 let pressed = touching.as_ref().map_or_else(World3::zeros, |of| of[i]);
                 let f = -(gradient[i] + pressed);
-                (f, v[i] * whole.cloth.m[i], whole.held[i].p_r())
+                let p_r = whole.held[i].p_r();
+                match self.policy.bleeding {
+                    None => (f, v[i] * whole.cloth.m[i], p_r),
+                    Some(_) => (beyond(f, grip[i]), self.gathered[i], p_r),
+                }
             };
-            let bleeding = self.policy.bleeding.map(|tau| tau / STATIC);
+            let bleeding = self.policy.rate();
             self.queue.rest(i, Rest { since: time, p, f, p_r, bleeding });
             self.active[i] = false;
             self.n_active -= 1;

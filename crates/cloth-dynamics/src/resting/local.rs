@@ -33,18 +33,28 @@ pub(super) struct WholeStage<'a> {
     pub(super) fixed: &'a [bool],
     /// Where the stage begins, with what is fixed where it is to be (m).
     pub(super) from: &'a [World3],
-    /// See [`Restrained::fine`].
-    pub(super) fine: f64,
+    /// Where momentum bleeds, who stands through the stage; all others are free.
+    pub(super) stands: Option<Vec<bool>>,
+    /// Where a try of the stage ended with fewer that were free (m).
+    pub(super) guess: Option<Vec<World3>>,
 }
 
 impl WholeStage<'_> {
     /// Where a vertex would go without forces (m).
     pub(super) fn target(&self, i: usize) -> World3 {
-        if self.fixed[i] {
+        let held = &self.held[i];
+        if self.is_fixed(i) {
             self.from[i]
+        } else if self.stands.is_some() {
+            self.start.base[i] + self.start.velocity[i] * self.start.h
         } else {
-            self.start.base[i] + self.held[i].velocity(&self.p[i]) * self.start.h
+            self.start.base[i] + held.velocity(&self.p[i]) * self.start.h
         }
+    }
+
+    /// Whether a vertex does not move from where the start has it.
+    pub(super) fn is_fixed(&self, i: usize) -> bool {
+        self.fixed[i] || self.stands.as_ref().is_some_and(|stands| stands[i])
     }
 }
 
@@ -57,7 +67,11 @@ pub(super) struct Local {
     p: Vec<World3>,
     guess: Vec<World3>,
     fixed: Vec<bool>,
+    /// Of these, those that not even what keeps things apart may move.
+    pinned: Vec<bool>,
+    /// Absent where vertices stand or are free.
     conjugates: Vec<Conjugate>,
+    target: Vec<World3>,
     starts: [Vec<World3>; 2],
 }
 
@@ -73,8 +87,8 @@ impl Local {
         whole: &WholeStage<'_>,
         ids: Vec<u32>,
         answers: &dyn Fn(usize) -> bool,
-    ) -> Result<Local, SolveError> {
-        let &StageStart { x_t0, base, velocity, h, time_t0, .. } = whole.start;
+    ) -> Local {
+        let &StageStart { x_t0, base, velocity, h, .. } = whole.start;
         let n = ids.len();
         let each = |of: &[World3]| ids.iter().map(|&i| of[i as usize]).collect::<Vec<_>>();
         let mut local = Local {
@@ -85,27 +99,29 @@ impl Local {
             guess: Vec::with_capacity(n),
             starts: [each(whole.from), Vec::with_capacity(n)],
             fixed: Vec::with_capacity(n),
-            conjugates: Vec::with_capacity(n),
+            pinned: Vec::with_capacity(n),
+            conjugates: Vec::new(),
+            target: Vec::with_capacity(n),
             ids,
         };
         for (k, &i) in local.ids.iter().enumerate() {
             let i = i as usize;
-            let is_fixed = whole.fixed[i] || !answers(i);
+            let is_fixed = whole.is_fixed(i) || !answers(i);
             local.fixed.push(is_fixed);
-            local.starts[1].push(if is_fixed { local.starts[0][k] } else { whole.target(i) });
+            local.pinned.push(whole.fixed[i] || !answers(i));
+            let target = if is_fixed { local.starts[0][k] } else { whole.target(i) };
+            local.target.push(target);
+            let guess = whole.guess.as_ref().filter(|_| !is_fixed);
+            local.starts[1].push(guess.map_or(target, |guess| guess[i]));
+            if whole.stands.is_some() {
+                continue;
+            }
             let way = || whole.held[i].velocity(&(velocity[i] * local.mass[k])) * h;
             local.guess.push(if is_fixed { World3::zeros() } else { way() });
             let held = if is_fixed { for_ever(local.mass[k]) } else { whole.held[i] };
-            let told = |source| SolveError::Restraint { time: time_t0, source };
-            if held.law() == Law::Exact && !held.is_free() && held.p_r() < f64::INFINITY {
-                return Err(told(arps::StepError::SecondKink { particle: i }));
-            }
-            let conjugate = held.conjugate();
-            let conjugate = conjugate
-                .map_err(|cause| told(arps::StepError::NotConvex { particle: i, cause }))?;
-            local.conjugates.push(conjugate);
+            local.conjugates.push(held.conjugate().expect("laws were checked before the stage"));
         }
-        Ok(local)
+        local
     }
 
     pub(super) fn stage(&self, h: f64) -> Stage<'_> {
@@ -120,23 +136,29 @@ impl Local {
         whole: &WholeStage<'_>,
     ) -> Result<Solved, SolveError> {
         let &StageStart { h, time, .. } = whole.start;
+        let restrained = || Restrained {
+            base: &self.base,
+            p: &self.p,
+            guess: &self.guess,
+            conjugates: &self.conjugates,
+        };
         let inertia = Inertia {
             mass: &self.mass,
-            target: &self.starts[1],
+            target: &self.target,
             h,
             time,
             fixed: &self.fixed,
-            restrained: Some(Restrained {
-                base: &self.base,
-                p: &self.p,
-                guess: &self.guess,
-                conjugates: &self.conjugates,
-                fine: whole.fine,
-            }),
+            pinned: &self.pinned,
+            restrained: whole.stands.is_none().then(restrained),
         };
         let Minimum { x, p, mut report } =
             minimise(system, solver, &inertia, &self.starts, settings)?;
         let is_solved = p.is_some();
+        if whole.stands.is_some() {
+            let n_free = self.fixed.iter().filter(|fixed| !**fixed).count();
+            report.rest.solves += report.iterations;
+            report.rest.unknowns += report.iterations * n_free;
+        }
         let gradient = match p {
             // Forces that are linear in the displacements of the last iteration: with those at its end,
             // what is left of it would be a change of momentum that moved nothing.
@@ -172,4 +194,16 @@ pub(super) fn scattered(
         gradient[i as usize] = solved.gradient[k];
     }
     Try { x, gradient, is_solved: solved.is_solved, report: solved.report, pushed }
+}
+
+/// Refuses laws of which an implicit stage cannot find the minimum.
+pub(super) fn check_laws(held: &[Held], time: f64) -> Result<(), SolveError> {
+    let told = |source| SolveError::Restraint { time, source };
+    for (particle, held) in held.iter().enumerate() {
+        if held.law() == Law::Exact && !held.is_free() && held.p_r() < f64::INFINITY {
+            return Err(told(arps::StepError::SecondKink { particle }));
+        }
+        held.conjugate().map_err(|cause| told(arps::StepError::NotConvex { particle, cause }))?;
+    }
+    Ok(())
 }

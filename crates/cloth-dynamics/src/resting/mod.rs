@@ -3,7 +3,8 @@
 //!
 //! A restrained vertex keeps its momentum p while it stands still (Manteaux2013), with a convex law
 //! that lets an implicit stage decide at its end who moves (`newton/restrained.rs`). Velocities of a
-//! cloth under restraint are momenta over mass; where nothing is restrained that is the same.
+//! cloth under restraint are momenta over mass; where nothing is restrained that is the same. Where
+//! momentum bleeds away, vertices stand or are free instead, and stages are plain: see `friction.rs`.
 //!
 //! The vertices are of two kinds. The *active* ones are those that moved in the last stage and all
 //! within a few edges; their forces are evaluated, as forces of a [`Part`] of the cloth with the same
@@ -13,7 +14,9 @@
 //! made again with a larger part. So who sleeps never decides what happens, only what it costs.
 
 mod fall_asleep;
+mod friction;
 mod local;
+mod momenta;
 mod neighbours;
 mod part_contact;
 
@@ -26,7 +29,8 @@ use crate::solve_report::{NewtonSettings, RestReport, SolveError, SolveReport};
 use crate::solver::LinearSolver;
 use crate::system::{Constraints, System};
 use arps::{Held, Particle, Rest, Restraint, WakeQueue};
-use local::{Local, Solved, Try, WholeStage, scattered};
+use friction::Restless;
+use local::{Local, Solved, Try, WholeStage, check_laws, scattered};
 use mesh_core::{ClothState, World3};
 use neighbours::Neighbours;
 use part_contact::{PartContact, gradient_of};
@@ -39,23 +43,6 @@ const REACH: usize = 2;
 const WHOLE: f64 = 0.6;
 /// The part is made smaller when less than this share of it is wanted.
 const SHRINK: f64 = 0.5;
-/// Error of a momentum that is restrained, as a share of that up to which its vertex rests.
-const FINE: f64 = 1e-4;
-/// The same where momentum bleeds, as a share of what does in the stage: were it more, forces left over
-/// in equilibrium would keep vertices from rest.
-const FINE_BLED: f64 = 0.3;
-const ROUGH: f64 = 0.05;
-/// By what momentum bleeds faster at rest: so that what is slow does not creep on for ever.
-const STATIC: f64 = 2.0;
-/// Effective speed, as a share of that up to which a vertex rests, below which bleeding puts it to rest
-/// unless it gets faster.
-const STICK: f64 = 0.2;
-/// By how much more its momentum may grow in a stage, as a share of what bleeds: forces that damping
-/// balances do not end creeping, and at rest are less than half of what that withstands.
-const GROWTH: f64 = 0.1;
-/// Share of the momentum up to which a vertex rests that one is left with which is put to rest: rounding
-/// must not take it out again, where it would be held by the lesser friction of what moves.
-const INSIDE: f64 = 1.0 - 1e-12;
 /// Change of a contact force on a sleeper that is rounding (1).
 const SAME: f64 = 1e-9;
 
@@ -64,10 +51,15 @@ const SAME: f64 = 1e-9;
 pub struct RestingPolicy {
     /// The thresholds.
     pub restraint: Arc<dyn Restraint>,
-    /// Time constant with which momentum bleeds away that is held back, p − m ∂T/∂p, if it does (s).
-    /// Without it, damped cloth creeps towards ‖p‖ = p_r for ever, and flickers there. Energy only falls
-    /// by it, and full dynamics are as they were; but it acts as static friction of p_r over this time
-    /// on what rests, and momentum is not conserved.
+    /// Time constant τ with which momentum bleeds away that is held back (s), if it does.
+    ///
+    /// Without, momenta and the restrained energy are conserved; but damped cloth creeps towards
+    /// ‖p‖ = p_r for ever, and while it slows down a stage solves many linear systems. With τ, what moves
+    /// has full dynamics, and a stage costs what it does without restraint. What is slower than p_r/2 with
+    /// all near it, and hardly gets faster, is put to rest, and stays until the momentum that it gathers
+    /// exceeds p_r, while that bleeds in τ/2: so until more than 2 p_r/τ pulls at it for long, besides what
+    /// friction in its contacts holds. Kinetic and potential energy together only fall by it; momentum is
+    /// not conserved, and p_f is of no account.
     pub bleeding: Option<f64>,
 }
 
@@ -82,6 +74,11 @@ pub(crate) struct Resting {
     queue: WakeQueue,
     /// Gradient of contact in the forces of sleepers (N); empty without contact.
     touching: Vec<World3>,
+    /// Where momentum bleeds, what active vertices that stand have gathered (kg m/s).
+    gathered: Vec<World3>,
+    /// Of these, those that are free in the next stage.
+    loose: Vec<u32>,
+    restless: Restless,
     was_fixed: Vec<bool>,
     /// What was held where at the end of the last stage.
     last: Constraints,
@@ -103,39 +100,49 @@ impl Resting {
             patch: None,
             queue: WakeQueue::new(),
             touching: Vec::new(),
+            gathered: vec![World3::zeros(); n],
+            loose: Vec::new(),
+            restless: Restless::default(),
             was_fixed: vec![false; n],
             last: Constraints::default(),
         }
     }
 
-    /// Wakes everything; momenta must have been [settled](Resting::settle).
+    /// Wakes everything and forgets the past; momenta must have been [settled](Resting::settle).
     pub(crate) fn wake_all(&mut self) {
+        self.activate_all();
+        self.loose.clear();
+        self.restless = Restless::default();
+    }
+
+    fn activate_all(&mut self) {
         self.active.fill(true);
         self.n_active = self.active.len();
         self.patch = None;
         self.queue = WakeQueue::new();
+        self.gathered.fill(World3::zeros());
     }
 
     /// Goes on with another policy from a time (s) on; sleepers with other thresholds wake at another
-    /// time. Momenta must have been [settled](Resting::settle).
+    /// time.
     pub(crate) fn change_policy(&mut self, policy: RestingPolicy, cloth: &ClothState, time: f64) {
-        let rate = |policy: &RestingPolicy| policy.bleeding.map(|tau| tau / STATIC);
         for i in 0..self.active.len() {
             let Some(&rest) = self.queue.get(i) else { continue };
             let (mass, x) = (cloth.m[i], cloth.x[i]);
             let p_r = policy.restraint.at(&Particle { index: i, mass, x, time }).p_r();
-            if !self.was_fixed[i] && (p_r != rest.p_r || rate(&policy) != rest.bleeding) {
-                let p = cloth.v[i] * mass;
-                let bleeding = rate(&policy);
+            let bleeding = policy.rate();
+            if !self.was_fixed[i] && (p_r != rest.p_r || bleeding != rest.bleeding) {
+                let p = rest.momentum_at(time);
                 self.queue.rest(i, Rest { since: time, p, p_r, bleeding, ..rest });
             }
         }
         self.policy = policy;
     }
 
-    /// Brings the velocities of sleepers up to a time (s).
+    /// Brings the velocities of sleepers up to a time (s). What they gather where momentum bleeds is never
+    /// theirs.
     pub(crate) fn settle(&self, v: &mut [World3], mass: &[f64], time: f64) {
-        if self.queue.is_empty() {
+        if self.queue.is_empty() || self.policy.bleeding.is_some() {
             return;
         }
         for (i, v) in v.iter_mut().enumerate() {
@@ -170,47 +177,54 @@ impl Resting {
         settings: &NewtonSettings,
         start: &StageStart<'_>,
     ) -> Result<StageEnd, SolveError> {
-        let &StageStart { x_t0, base, velocity, h, time_t0, time, .. } = start;
+        let &StageStart { x_t0, base, h, time_t0, time, .. } = start;
         let n = x_t0.len();
         let held = |i: usize| {
             let (mass, x) = (cloth.m[i], x_t0[i]);
             self.policy.restraint.at(&Particle { index: i, mass, x, time: time_t0 })
         };
         let held: Vec<Held> = (0..n).map(held).collect();
-        if held.iter().all(Held::is_free) {
-            self.wake_all();
-            return plain_stage(cloth, system, solver, settings, start);
-        }
+        check_laws(&held, time_t0)?;
+        let slowed = self.policy.slowed(&held, start.velocity, h);
+        let start =
+            &StageStart { velocity: &slowed, constraints: start.constraints.clone(), ..*start };
+        let velocity = start.velocity;
         let mut fixed = vec![false; n];
         let mut from = x_t0.to_vec();
         for &(i, x) in &start.constraints.fixed {
             fixed[i as usize] = true;
             from[i as usize] = x;
         }
-        let bled = self.policy.bleeding.map_or(0.0, |tau| (h / tau).min(1.0));
-        let momentum = |i: usize| {
-            let p = velocity[i] * cloth.m[i];
-            if bled == 0.0 || !self.active[i] {
-                // Of sleepers the queue knows it.
-                return p;
-            }
-            let (r, p_r) = (p.norm(), held[i].p_r());
-            if r <= p_r {
-                p * (1.0 - STATIC * bled).max(0.0)
-            } else {
-                p - (p - held[i].s(&p)) * bled
-            }
+        let stands = self.policy.who_stands(&held, &std::mem::take(&mut self.loose), start, &fixed);
+        let is_restrained = match &stands {
+            None => !held.iter().all(Held::is_free),
+            Some(stands) => stands.contains(&true),
         };
-        let p: Vec<World3> = (0..n).map(momentum).collect();
+        if !is_restrained {
+            self.activate_all();
+            let mut end = plain_stage(cloth, system, solver, settings, start)?;
+            if !held.iter().all(Held::is_free) {
+                let (solves, unknowns) = (end.report.iterations, end.report.iterations * n);
+                end.report.rest = RestReport { stages: 1, solves, unknowns, ..Default::default() };
+            }
+            return Ok(end);
+        }
+        let p: Vec<World3> = (0..n).map(|i| velocity[i] * cloth.m[i]).collect();
 
         let mut rest = RestReport { stages: 1, ..RestReport::default() };
-        let woken = self.woken(&held, &p, start, &from, &fixed, &mut rest);
-        self.grow(woken, false);
+        let woken = self.woken(&held, start, &from, &fixed, &mut rest);
+        self.grow(woken, 2 * REACH, time_t0);
         let mut contact_s = 0.0;
-        let fine =
-            self.policy.bleeding.map_or(FINE, |tau| (FINE_BLED * h / tau).clamp(FINE, ROUGH));
-        let whole =
-            WholeStage { cloth, start, held: &held, p: &p, fixed: &fixed, from: &from, fine };
+        let mut whole = WholeStage {
+            cloth,
+            start,
+            held: &held,
+            p: &p,
+            fixed: &fixed,
+            from: &from,
+            stands,
+            guess: None,
+        };
         let is_still = |c: &dyn Contact| c.is_still([time_t0, time]);
         if self.n_active == 0 && system.contact.as_deref().is_none_or(is_still) {
             rest.slept = 1;
@@ -223,6 +237,7 @@ impl Resting {
         if self.touching.is_empty() && system.contact.is_some() {
             self.touching = vec![World3::zeros(); n];
         }
+        let mut tries = SolveReport::default();
         let done = loop {
             let clock = Instant::now();
             self.begin_contact(system, &whole, &mut rest);
@@ -249,15 +264,23 @@ impl Resting {
                 }
             }
             if missing.is_empty() {
+                missing = self.pulled(&mut whole, &done, system.contact.as_deref(), rest.redone);
+            }
+            if missing.is_empty() {
                 break done;
             }
             rest.redone += 1;
-            self.grow(missing, true);
+            let work = SolveReport { stages: 0, unconverged: 0, touches: 0, ..done.report };
+            tries.add(&work);
+            whole.guess = Some(done.x);
+            self.grow(missing, 4 * REACH, time_t0);
         };
         let Try { x, gradient, is_solved, mut report, .. } = done;
+        report.add(&tries);
         report.contact_s += contact_s;
         rest.untouched = n - self.n_active;
         let v = self.momenta(&whole, &x, &gradient, is_solved, &mut rest);
+        self.gather(&whole, system.contact.as_deref(), &gradient);
         self.put_to_sleep(system, &whole, &x, &v);
         self.was_fixed.clone_from(&fixed);
         self.last.clone_from(&start.constraints);
@@ -269,7 +292,6 @@ impl Resting {
     fn woken(
         &mut self,
         held: &[Held],
-        p: &[World3],
         start: &StageStart<'_>,
         from: &[World3],
         fixed: &[bool],
@@ -282,7 +304,8 @@ impl Resting {
                     && rest.p_r < f64::INFINITY
                 {
                     let since = start.time - start.h;
-                    self.queue.rest(i, Rest { since, p: p[i], p_r: held.p_r(), ..rest });
+                    let p = rest.momentum_at(since);
+                    self.queue.rest(i, Rest { since, p, p_r: held.p_r(), ..rest });
                 }
             }
         }
@@ -302,25 +325,32 @@ impl Resting {
         woken
     }
 
-    /// Makes vertices active with all around them; by far more if a stage was `redone` for them.
-    fn grow(&mut self, missing: Vec<u32>, redone: bool) {
-        if missing.is_empty() {
-            return;
-        }
-        let rings = if redone { 4 * REACH } else { 2 * REACH };
+    /// Makes vertices active with all around them, at a time (s).
+    fn grow(&mut self, missing: Vec<u32>, rings: usize, time: f64) {
         let mut wanted = self.near.around(missing, rings);
         wanted.retain(|&i| !self.active[i as usize]);
+        if wanted.is_empty() {
+            return;
+        }
         self.patch = None;
         for i in wanted {
-            self.activate(i as usize);
+            self.activate(i as usize, time);
         }
         if self.n_active as f64 > WHOLE * self.active.len() as f64 {
-            self.wake_all();
+            (0..self.active.len())
+                .filter(|&i| !self.active[i])
+                .collect::<Vec<_>>()
+                .into_iter()
+                .for_each(|i| self.activate(i, time));
         }
     }
 
-    fn activate(&mut self, i: usize) {
-        self.queue.take(i);
+    fn activate(&mut self, i: usize, time: f64) {
+        if let Some(rest) = self.queue.take(i)
+            && self.policy.bleeding.is_some()
+        {
+            self.gathered[i] = rest.momentum_at(time);
+        }
         self.active[i] = true;
         self.n_active += 1;
     }
@@ -346,7 +376,7 @@ impl Resting {
         if self.n_active < x_t0.len() {
             let disturbed = self.disturbed(&**contact, whole.from, whole, false);
             report.woken += disturbed.len();
-            self.grow(disturbed, false);
+            self.grow(disturbed, 2 * REACH, time_t0);
         }
     }
 
@@ -370,7 +400,8 @@ impl Resting {
             }
             let f = rest.f + before - now;
             let p = whole.p[i] + f * h;
-            if p.norm() > rest.p_r {
+            // What friction in the contact holds may have changed as well.
+            if p.norm() > rest.p_r || self.policy.bleeding.is_some() {
                 woken.push(i as u32);
             } else {
                 changed.push((i, Rest { since: time, p, f, ..*rest }));
@@ -396,7 +427,7 @@ impl Resting {
     ) -> Result<Try, SolveError> {
         let n = self.active.len();
         if self.n_active == n {
-            let local = Local::new(whole, (0..n as u32).collect(), &|_| true)?;
+            let local = Local::new(whole, (0..n as u32).collect(), &|_| true);
             system.springs = Springs { springs: whole.start.constraints.springs.clone() };
             system.begin(local.stage(whole.start.h));
             system.make_room_for_contact()?;
@@ -412,7 +443,7 @@ impl Resting {
             self.patch = Some(Patch { system: system.part(&part)?, part });
         }
         let Some(Patch { part, system: own }) = &mut self.patch else { unreachable!() };
-        let local = Local::new(whole, part.vertices().to_vec(), &|i| part.answers(i))?;
+        let local = Local::new(whole, part.vertices().to_vec(), &|i| part.answers(i));
         own.springs = Springs::of(part, &whole.start.constraints.springs);
         own.begin(local.stage(whole.start.h));
         let Some(contact) = system.contact.take() else {
@@ -432,60 +463,5 @@ impl Resting {
         let (contact, pushed) = lent.end();
         system.contact = contact;
         Ok(scattered(part, whole, solved?, pushed))
-    }
-
-    /// Momenta over mass at the end of the stage (m/s).
-    fn momenta(
-        &self,
-        whole: &WholeStage<'_>,
-        x: &[World3],
-        gradient: &[World3],
-        is_solved: bool,
-        report: &mut RestReport,
-    ) -> Vec<World3> {
-        let &StageStart { base, h, time, .. } = whole.start;
-        let mut v = whole.start.velocity.to_vec();
-        self.settle(&mut v, &whole.cloth.m, time);
-        for (i, v) in v.iter_mut().enumerate().filter(|(i, _)| self.active[*i]) {
-            let d = x[i] - base[i];
-            if whole.fixed[i] || d != World3::zeros() {
-                let held = &whole.held[i];
-                *v = d / h;
-                if !whole.fixed[i] && !held.is_free() {
-                    let conjugate = held.conjugate().expect("it was convex before the stage");
-                    let by_force = whole.p[i] - gradient[i] * h;
-                    let p = if is_solved && conjugate.is_vague(&by_force, &d, h) {
-                        by_force
-                    } else {
-                        conjugate.momentum(v)
-                    };
-                    let before = whole.start.velocity[i] * whole.cloth.m[i];
-                    *v = self.stuck(held, &before, p, h) / whole.cloth.m[i];
-                }
-                continue;
-            }
-            let mut p = whole.p[i] - gradient[i] * h;
-            let (norm, most) = (p.norm(), whole.held[i].p_r());
-            let is_off = norm > (1.0 + 2.0 * whole.fine) * most;
-            if is_off || (norm > most && self.policy.bleeding.is_some()) {
-                // Left over by a stage that did not converge, it would be energy from nowhere; where
-                // momentum bleeds, less does too.
-                report.cut += usize::from(is_off);
-                p *= INSIDE * most / norm;
-            }
-            *v = p / whole.cloth.m[i];
-        }
-        v
-    }
-
-    /// A momentum at the end of a stage of length `h` (s), put to rest if it bleeds, is slow, and does not
-    /// get faster. `before` is that at its beginning, before any of it bled: with what was left then, each
-    /// force forwards would make it faster, though friction holds it.
-    fn stuck(&self, held: &Held, before: &World3, p: World3, h: f64) -> World3 {
-        let Some(tau) = self.policy.bleeding else { return p };
-        let (r, p_r) = (p.norm(), held.p_r());
-        let most = before.norm() + GROWTH * (h / tau).min(1.0) * p_r;
-        let is_slow = held.dphi(r) < STICK * p_r;
-        if r > p_r && is_slow && r <= most { p * (INSIDE * p_r / r) } else { p }
     }
 }

@@ -7,6 +7,8 @@ use crate::solver::BlockPattern;
 pub(super) struct Neighbours {
     starts: Vec<u32>,
     list: Vec<u32>,
+    /// By vertex, the number of the piece of cloth that it belongs to.
+    pieces: Vec<usize>,
 }
 
 impl Neighbours {
@@ -28,7 +30,29 @@ impl Neighbours {
                 next[of as usize] += 1;
             }
         }
-        Neighbours { starts, list }
+        let mut pieces = vec![usize::MAX; n];
+        let (mut n_pieces, mut found) = (0, Vec::new());
+        for start in 0..n {
+            if pieces[start] == usize::MAX {
+                pieces[start] = n_pieces;
+                found.push(start);
+                while let Some(i) = found.pop() {
+                    for &j in &list[starts[i] as usize..starts[i + 1] as usize] {
+                        if pieces[j as usize] == usize::MAX {
+                            pieces[j as usize] = n_pieces;
+                            found.push(j as usize);
+                        }
+                    }
+                }
+                n_pieces += 1;
+            }
+        }
+        Neighbours { starts, list, pieces }
+    }
+
+    /// By vertex, the number of the piece of cloth that it belongs to.
+    pub(super) fn pieces(&self) -> &[usize] {
+        &self.pieces
     }
 
     /// These vertices and all that are at most so many edges away, ascending.

@@ -321,6 +321,10 @@ impl Contact for SurfaceContact {
         drives.for_each(|drive| drive.add_gradient(x, gradient));
     }
 
+    fn add_grip(&self, stands: &[bool], grip: &mut [f64]) {
+        self.slips.iter().for_each(|slip| slip.add_grip(stands, grip));
+    }
+
     fn add_system(&self, x: &[World3], gradient: &mut [World3], stiffness: &mut BlockMatrix) {
         self.add_gradient(x, gradient);
         for touch in &self.touches {

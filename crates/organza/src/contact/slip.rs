@@ -19,6 +19,8 @@ pub(super) struct Slip {
     y_stick: f64,
     /// Way of the obstacle's side during the stage, less the cloth's side's base (m).
     offset: World3,
+    /// The obstacle's side stands still, or there is none.
+    stands: bool,
 }
 
 impl Slip {
@@ -35,7 +37,15 @@ impl Slip {
         is_some.then(|| {
             let normal = closest.offset / closest.distance;
             let tangential = Matrix3::identity() - normal * normal.transpose();
-            Slip { sides, weights: closest.weights, tangential, most, y_stick, offset: way }
+            Slip {
+                sides,
+                weights: closest.weights,
+                tangential,
+                most,
+                y_stick,
+                offset: way,
+                stands: way == World3::zeros(),
+            }
         })
     }
 
@@ -63,6 +73,15 @@ impl Slip {
         if y > 0.0 {
             let force = slip / y * (self.most * friction(y, self.y_stick)[1]);
             self.sides.add_gradient(&self.weights, &force, gradient);
+        }
+    }
+
+    /// Adds what holds vertices that stand (N); where anything of the contact moves, nothing does.
+    pub(super) fn add_grip(&self, stands: &[bool], grip: &mut [f64]) {
+        let cloth = || (0..4).filter(|&k| self.sides.is_cloth[k]);
+        let of = |k: usize| self.sides.vertices[k] as usize;
+        if self.stands && cloth().all(|k| stands[of(k)]) {
+            cloth().for_each(|k| grip[of(k)] += self.most * self.weights[k].abs());
         }
     }
 

@@ -155,8 +155,7 @@ impl Restraint for ByGarment {
 /// Restrained kinetic energy (J).
 pub(super) fn kinetic_energy(policy: &RestingPolicy, cloth: &ClothState, time: f64) -> f64 {
     let each = cloth.m.iter().zip(&cloth.x).enumerate().map(|(index, (&mass, &x))| {
-        let held = policy.restraint.at(&Particle { index, mass, x, time });
-        held.kinetic_energy(&(cloth.v[index] * mass))
+        policy.kinetic_energy(&Particle { index, mass, x, time }, &cloth.v[index])
     });
     each.sum()
 }
@@ -171,8 +170,7 @@ pub(super) fn summary(
 ) -> (f64, RestraintSummary) {
     let mut motions = Vec::with_capacity(cloth.m.len());
     for (index, (&mass, &x)) in cloth.m.iter().zip(&cloth.x).enumerate() {
-        let held = policy.restraint.at(&Particle { index, mass, x, time });
-        motions.push(held.motion(&(cloth.v[index] * mass)));
+        motions.push(policy.motion(&Particle { index, mass, x, time }, &cloth.v[index]));
     }
     let count = |motion| motions.iter().filter(|m| **m == motion).count();
     let summary = RestraintSummary {

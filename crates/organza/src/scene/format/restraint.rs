@@ -5,7 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Lets cloth rest that hardly moves, so that it costs nothing until it has to move again (adaptively
-/// restrained dynamics, Manteaux2013). A vertex keeps its momentum while it rests, and wakes when that
+/// restrained dynamics, Manteaux2013). A vertex gathers momentum while it rests, and wakes when that
 /// has grown.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -15,9 +15,9 @@ pub struct RestraintFile {
     /// How a vertex passes from rest to full dynamics.
     #[serde(default)]
     pub law: Law,
-    /// Time in which momentum bleeds away that is held back (s). Without it (null) slow cloth creeps
-    /// on for long; with it, rest withstands a force like static friction: what would give a vertex
-    /// twice its speed of rest in this time.
+    /// Time in which momentum bleeds away that is held back (s). With it, cloth moves freely or stands, and
+    /// rest withstands a force like static friction: what would give a vertex eight times its speed of rest
+    /// in this time. Without it (null) momentum is conserved, and slow cloth creeps on for long.
     #[serde(default = "default::bleeding_s")]
     pub bleeding_s: Option<f64>,
 }
