@@ -1,7 +1,6 @@
 //! From the fluid of a scene to particles between walls.
 
 use super::meeting::Meeting;
-use super::policy::{self, Policy};
 use super::{Water, settings};
 use crate::build::Garment;
 use crate::obstacle::Obstacle;
@@ -98,13 +97,11 @@ pub(crate) fn water(
         fluid.add_sink(Sink(settings::bounds(sink.min, sink.max)));
     }
     let (name, is_restrained) = (of.name.clone(), of.file.restraint.is_some());
-    let fluid = match &of.file.restraint {
+    let fluid = match of.policy.clone().zip(of.file.restraint.as_ref()) {
         None => fluid.released(),
-        Some(restraint) => {
-            let wrong = |what: String| ("restraint".to_owned(), what);
-            let policy: Policy = policy::of(restraint).map_err(|e| wrong(e.to_string()))?;
+        Some((policy, restraint)) => {
             let settings = settings::restraint(restraint, fluid.settings());
-            fluid.restrained(policy, settings).map_err(|e| wrong(e.to_string()))?
+            fluid.restrained(policy, settings).map_err(at("restraint"))?
         }
     };
     Ok(Water { name, fluid, is_restrained, meeting })
