@@ -401,7 +401,7 @@ impl<R: Restraint> Fluid<R> {
             gravity: self.settings.gravity.into(),
             changes,
         };
-        let looked = update.run();
+        let Some(looked) = update.run() else { return false };
         report.changed += looked.changed;
         report.density_pairs += looked.density_pairs;
         report.force_pairs += looked.force_pairs;

@@ -33,6 +33,10 @@ const STALE: u8 = 16;
 /// The part of the particles from which on it is not worth looking for those that no change has
 /// reached (1).
 const MOST_CHANGED: f64 = 0.4;
+/// The part of the particles from which on, if movers are next to them, a sweep over everything costs less
+/// (1), and of how many one is asked: scattered movers are next to most particles even where they are few.
+const MOST_TOUCHED: f64 = 0.85;
+const ASKED: usize = 8;
 /// Time to bring a particle's pairs up to date, over that to compute its sums anew (1): densities, of
 /// which both ends of a pair get the difference, and accelerations. Measured.
 const DENSITY_COST: f64 = 2.0;
@@ -96,11 +100,16 @@ pub(crate) struct Update<'a> {
 }
 
 impl Update<'_> {
-    /// Brings densities and accelerations up to date.
-    pub(crate) fn run(mut self) -> Looked {
+    /// Brings densities and accelerations up to date. `None`, and nothing is changed, where it would take
+    /// longer than to compute them anew.
+    pub(crate) fn run(mut self) -> Option<Looked> {
         self.changes.marks.resize(self.state.len(), 0);
         self.changes.wall_marks.resize(self.walls.x.len(), 0);
         self.mark_movers();
+        if self.movers_are_everywhere() {
+            self.changes.clear_marks();
+            return None;
+        }
         let density_pairs = match self.touched_by_movers() {
             Some(pairs) => self.densities_anew(pairs),
             None => lanes::run(DensityChanges(&mut self)),
@@ -112,7 +121,19 @@ impl Update<'_> {
         };
         let changed = self.changes.changed.len() as u64;
         self.changes.finish(self.state, self.walls);
-        Looked { density_pairs, force_pairs, changed }
+        Some(Looked { density_pairs, force_pairs, changed })
+    }
+
+    /// True if there are movers next to most particles, by the word of some of these.
+    fn movers_are_everywhere(&self) -> bool {
+        let marks = &self.changes.marks;
+        let moves = |i: &u32| marks[*i as usize] & MOVED != 0;
+        let asked = (0..marks.len()).step_by(ASKED);
+        let n = asked.len();
+        let touched = asked.filter(|&i| {
+            marks[i] & MOVED != 0 || self.neighbours.candidates(i).iter().any(moves)
+        });
+        touched.count() as f64 > MOST_TOUCHED * n as f64
     }
 
     /// Marks who has moved or stopped.
@@ -457,6 +478,11 @@ impl Changes {
         for &j in &self.changed_walls {
             self.wall_terms[j as usize] = walls.x[j as usize][3];
         }
+        self.clear_marks();
+    }
+
+    /// Removes all marks.
+    fn clear_marks(&mut self) {
         for &i in self.touched.iter().chain(&self.changed).chain(&self.stale) {
             self.marks[i as usize] = 0;
         }
