@@ -96,6 +96,8 @@ pub(crate) struct Update<'a> {
     pub(crate) tolerance: f64,
     /// Acceleration of gravity (m/s²).
     pub(crate) gravity: [f64; 3],
+    /// Whether to leave it to a sweep where that costs less.
+    pub(crate) may_leave: bool,
     pub(crate) changes: &'a mut Changes,
 }
 
@@ -106,7 +108,7 @@ impl Update<'_> {
         self.changes.marks.resize(self.state.len(), 0);
         self.changes.wall_marks.resize(self.walls.x.len(), 0);
         self.mark_movers();
-        if self.movers_are_everywhere() {
+        if self.may_leave && self.movers_are_everywhere() {
             self.changes.clear_marks();
             return None;
         }

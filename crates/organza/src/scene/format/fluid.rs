@@ -202,7 +202,8 @@ pub struct FluidRestraint {
     /// of the pressure under a layer of particles.
     #[serde(default)]
     pub pressure_tolerance_pa: Option<f64>,
-    /// Everything is computed anew where more than this part of the particles moves (1).
+    /// Everything is computed anew where more than this part of the particles moves (1), or fewer that are
+    /// next to nearly all others; 1 for never.
     #[serde(default = "sweep_above")]
     pub sweep_above: f64,
 }
