@@ -38,13 +38,10 @@ const MOST_CHANGED: f64 = 0.4;
 const MOST_TOUCHED: f64 = 0.85;
 const ASKED: usize = 8;
 /// Time to bring a particle's pairs up to date, over that to compute its sums anew (1): densities, of
-/// which both ends of a pair get the difference, and accelerations. Measured.
-const DENSITY_COST: f64 = 2.0;
+/// which both ends of a pair get the difference, and accelerations. Measured. New sums of densities find the
+/// active neighbours, which accelerations need and the update of pairs makes useless.
+const DENSITY_COST: f64 = 5.0;
 const FORCE_COST: f64 = 2.5;
-/// The same for densities where so many move, as a part of all (1), that accelerations will be computed
-/// anew: these need the active neighbours, which new sums find and the update of pairs makes useless.
-const MANY_MOVERS: f64 = 0.1;
-const DENSITY_COST_OF_MANY: f64 = 5.0;
 
 /// What is remembered from step to step.
 #[derive(Clone, Debug, Default)]
@@ -132,9 +129,8 @@ impl Update<'_> {
         let moves = |i: &u32| marks[*i as usize] & MOVED != 0;
         let asked = (0..marks.len()).step_by(ASKED);
         let n = asked.len();
-        let touched = asked.filter(|&i| {
-            marks[i] & MOVED != 0 || self.neighbours.candidates(i).iter().any(moves)
-        });
+        let touched = asked
+            .filter(|&i| marks[i] & MOVED != 0 || self.neighbours.candidates(i).iter().any(moves));
         touched.count() as f64 > MOST_TOUCHED * n as f64
     }
 
@@ -158,10 +154,7 @@ impl Update<'_> {
     /// together. Returns the number of their pairs.
     fn touched_by_movers(&mut self) -> Option<u64> {
         let Changes { marks, touched, wall_marks, touched_walls, .. } = &mut *self.changes;
-        let n_movers = self.movers.len() as f64;
-        let are_many = n_movers > MANY_MOVERS * marks.len() as f64;
-        let cost = if are_many { DENSITY_COST_OF_MANY } else { DENSITY_COST };
-        let most = (cost * n_movers) as usize;
+        let most = (DENSITY_COST * self.movers.len() as f64) as usize;
         let (n_before, n_walls_before) = (touched.len(), touched_walls.len());
         for &mover in self.movers {
             touch(self.neighbours.candidates(mover as usize), TOUCHED, marks, touched);

@@ -8,7 +8,7 @@ use crate::scene;
 use crate::scene::format::{Basin, Block, Face};
 use mesh_core::ClothState;
 use nalgebra::Vector3;
-use sph::{Bounds, Emitter, Fluid, FluidError, Open, Sink, Walls, scenes};
+use sph::{Bounds, Emitter, Fluid, FluidError, FluidSettings, Open, Sink, Walls, scenes};
 
 /// How much denser than at rest a particle may be at the start (1). Where fluid stands in fluid or in
 /// a wall it would burst apart in the first step.
@@ -64,7 +64,7 @@ pub(crate) fn water(
     let fluid_settings = settings::fluid(of, &around);
     let (mut x, mut v) = (Vec::new(), Vec::new());
     for block in &of.file.blocks {
-        let free = particles(block, spacing).into_iter();
+        let free = particles(block, spacing, &fluid_settings).into_iter();
         x.extend(free.filter(|x| bodies.iter().all(|body| !is_inside(body, x))));
         v.resize(x.len(), Vector3::from(block.velocity));
     }
@@ -108,9 +108,15 @@ pub(crate) fn water(
 }
 
 /// Positions of the particles of a block (m).
-fn particles(block: &Block, spacing: f64) -> Vec<Vector3<f64>> {
+fn particles(block: &Block, spacing: f64, settings: &FluidSettings) -> Vec<Vector3<f64>> {
     let n = settings::lattice(block, spacing);
-    scenes::block(n, Vector3::from(block.min), spacing, u64::from(block.seed))
+    let mut x = scenes::block(n, Vector3::from(block.min), spacing, u64::from(block.seed));
+    if block.pressed {
+        let size = Vector3::from(n.map(|n| n as f64 * spacing));
+        let min = Vector3::from(block.min);
+        scenes::press(&mut x, settings, &Bounds::new(min, min + size));
+    }
+    x
 }
 
 /// Whether a body surrounds a point at the start: the solid angle of its triangles, seen from there, is

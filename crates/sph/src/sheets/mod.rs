@@ -159,11 +159,8 @@ impl Sheets {
             self.longest_way = self.longest_way.max(way.norm());
         }
         // One part more than needed does no harm, and what is listed stays good.
-        let fits = |(&has, &needs): (&u32, &f64)| {
-            (needs..=needs + 1.0).contains(&f64::from(has))
-        };
-        let is_sampled =
-            self.parts.len() == parts.len() && self.parts.iter().zip(&parts).all(fits);
+        let fits = |(&has, &needs): (&u32, &f64)| (needs..=needs + 1.0).contains(&f64::from(has));
+        let is_sampled = self.parts.len() == parts.len() && self.parts.iter().zip(&parts).all(fits);
         if is_sampled {
             self.near.travel(jump);
         } else {

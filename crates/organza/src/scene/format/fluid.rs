@@ -87,6 +87,10 @@ pub struct Block {
     /// where they are.
     #[serde(default)]
     pub seed: u32,
+    /// Brings its layers as close as their weight presses them in fluid that stands still, so that sound does
+    /// not go up and down in it from the start on.
+    #[serde(default)]
+    pub pressed: bool,
 }
 
 /// A rectangular nozzle that lets layers of particles out.
