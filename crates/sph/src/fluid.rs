@@ -303,7 +303,7 @@ impl<R: Restraint> Fluid<R> {
             let clock = Instant::now();
             // As far as particles and surfaces may come towards each other.
             let ahead = (moved.fastest + sheets.speed()) * dt;
-            sheets.list(&self.laws, (&state.x, self.time), ahead);
+            sheets.list(&self.laws, &state.x, ahead);
             sheets.push((dt, self.laws.mass), &state.by_sheets, &mut state.given);
             sheets.begin_step(dt);
             let is_restrained = self.restraint.is_some();
@@ -311,8 +311,7 @@ impl<R: Restraint> Fluid<R> {
             let kept = sheets.keep_sides(state, moved, (listed, domain), of_step, is_restrained);
             (report.stopped, report.squeezed) = (kept.stopped, kept.squeezed);
             sheets.end_step();
-            let way = (moved.fastest * dt).max(kept.longest_way) + sheets.speed() * dt;
-            sheets.travel_until(way, self.time + dt);
+            sheets.travel((moved.fastest * dt).max(kept.longest_way) + sheets.speed() * dt);
             report.seconds.sheets += clock.elapsed().as_secs_f64();
         }
         if let Some(Outside { at, x, u }) = &moved.outside {

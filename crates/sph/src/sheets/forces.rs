@@ -26,10 +26,10 @@ pub(super) struct Touch {
 }
 
 impl Sheets {
-    /// Lists the samples around particles at `x` at a time of the fluid (s), if need be; `ahead` (m) is how
-    /// far samples and particles will come towards each other before [`Sheets::end_step`].
-    pub(crate) fn list(&mut self, laws: &Laws, (x, time): (&[Point], f64), ahead: f64) {
-        self.near.list((x, time), &self.places, [laws.kernel.support(), self.spacing, ahead]);
+    /// Lists the samples around particles at `x`, if need be; `ahead` (m) is how far samples and
+    /// particles will come towards each other before [`Sheets::end_step`].
+    pub(crate) fn list(&mut self, laws: &Laws, x: &[Point], ahead: f64) {
+        self.near.list(x, &self.places, [laws.kernel.support(), self.spacing, ahead]);
     }
 
     /// The particles are in another order, or others.
@@ -37,9 +37,9 @@ impl Sheets {
         self.near.forget();
     }
 
-    /// Notes how far (m) particles and samples come towards each other at most, until a time of the fluid (s).
-    pub(crate) fn travel_until(&mut self, way: f64, time: f64) {
-        self.near.travel_until(way, time);
+    /// Notes how far (m) particles and samples have come towards each other at most.
+    pub(crate) fn travel(&mut self, way: f64) {
+        self.near.travel(way);
     }
 
     /// Gives the corners what the present forces give in a time `dt` (s), and notes in `given` by which
@@ -64,20 +64,16 @@ impl Sheets {
     }
 
     /// The point of the surfaces closest to the `k`th particle that they are near, if it may be within
-    /// `reach` (m); notes how far its nearest sample is, unless it is known to be too far.
+    /// `reach` (m); notes how far its nearest sample is.
     fn closest(&mut self, k: usize, x: &[Point], reach: f64) -> Option<Touch> {
-        if self.near.at_least(k) > reach + FARTHEST * self.spacing {
-            return None;
-        }
         let particle = self.near.who[k];
         let p = &x[particle as usize];
         let squared = |s: &u32| squared_distance(p, &self.places[*s as usize]);
         let nearest = self.near.samples(k).iter().map(squared).fold(f64::INFINITY, f64::min);
-        let nearest = nearest.sqrt();
-        self.near.look(k, nearest);
+        self.near.nearest[k] = nearest;
         // Whatever is closer than a sample belongs to one that is no farther than this.
-        let farthest = nearest + FARTHEST * self.spacing;
-        if nearest > reach + FARTHEST * self.spacing {
+        let farthest = nearest.sqrt() + FARTHEST * self.spacing;
+        if nearest.sqrt() > reach + FARTHEST * self.spacing {
             return None;
         }
         let x = Vector3::new(p[0], p[1], p[2]);

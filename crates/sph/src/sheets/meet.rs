@@ -30,7 +30,7 @@ impl<R: Restraint> Fluid<R> {
         let clock = Instant::now();
         self.state.meet_sheets();
         sheets.start(duration);
-        sheets.list(&self.laws, (&self.state.x, self.time), 0.0);
+        sheets.list(&self.laws, &self.state.x, 0.0);
         sheets.find_touches(&self.laws, &self.state.x);
         // Pressures stay as they are until the step has been made.
         take_away(&mut self.state.a, &mut self.state.by_sheets);
@@ -47,7 +47,7 @@ impl<R: Restraint> Fluid<R> {
     /// step; those that are left are numbered anew.
     pub fn leave_room(&mut self, sheets: &mut Sheets) {
         sheets.start(0.0);
-        sheets.list(&self.laws, (&self.state.x, self.time), 0.0);
+        sheets.list(&self.laws, &self.state.x, 0.0);
         sheets.find_touches(&self.laws, &self.state.x);
         if sheets.touches.is_empty() {
             return;
@@ -72,7 +72,7 @@ impl<R: Restraint> Fluid<R> {
     pub fn load(&mut self, sheets: &mut Sheets) -> (Vec<f64>, Vec<Vector3<f64>>) {
         self.state.meet_sheets();
         sheets.start(0.0);
-        sheets.list(&self.laws, (&self.state.x, self.time), 0.0);
+        sheets.list(&self.laws, &self.state.x, 0.0);
         let n = sheets.impulses().len();
         let (mut masses, mut impulses) = (vec![0.0; n], vec![Vector3::zeros(); n]);
         let mut is_near = vec![false; self.len()];
@@ -142,7 +142,7 @@ impl<R: Restraint> Fluid<R> {
         }
         self.state.meet_sheets();
         take_away(&mut self.state.a, &mut self.state.by_sheets);
-        sheets.list(&self.laws, (&self.state.x, self.time), 0.0);
+        sheets.list(&self.laws, &self.state.x, 0.0);
         sheets.find_touches(&self.laws, &self.state.x);
         sheets.densities(&self.laws, &mut self.state.by_sheets);
         seconds.sheets += clock.elapsed().as_secs_f64();

@@ -42,8 +42,6 @@ pub struct Sheets {
     /// The time from start to end (s), and what of it has gone by (1).
     duration: f64,
     gone: f64,
-    /// How many parts are along each edge of a triangle, and one sample for each part.
-    parts: Vec<u32>,
     samples: Vec<Sample>,
     /// Places of samples (m), and 0.
     places: Vec<Point>,
@@ -95,7 +93,6 @@ impl Sheets {
             longest_way: 0.0,
             duration: 0.0,
             gone: 0.0,
-            parts: Vec::new(),
             samples: Vec::new(),
             places: Vec::new(),
             velocities: zeros.clone(),
@@ -148,8 +145,6 @@ impl Sheets {
         if n > MOST_SAMPLES {
             return Err(FluidError::TooMany { n: n as usize });
         }
-        // How far the corners are from where they were (m).
-        let jump = self.x.iter().zip(from).map(|(x, from)| (from - x).norm()).fold(0.0, f64::max);
         self.from.copy_from_slice(from);
         self.to.copy_from_slice(to);
         self.x.copy_from_slice(from);
@@ -158,21 +153,13 @@ impl Sheets {
             *way = to - from;
             self.longest_way = self.longest_way.max(way.norm());
         }
-        // One part more than needed does no harm, and what is listed stays good.
-        let fits = |(&has, &needs): (&u32, &f64)| (needs..=needs + 1.0).contains(&f64::from(has));
-        let is_sampled = self.parts.len() == parts.len() && self.parts.iter().zip(&parts).all(fits);
-        if is_sampled {
-            self.near.travel(jump);
-        } else {
-            self.parts = parts.iter().map(|&n| n as u32).collect();
-            self.samples.clear();
-            for (triangle, &n) in (0..).zip(&self.parts) {
-                sample(triangle, n, &mut self.samples);
-            }
-            self.near.forget();
+        self.samples.clear();
+        for (triangle, &n) in (0..).zip(&parts) {
+            sample(triangle, n as u32, &mut self.samples);
         }
         self.impulses.fill(Vector3::zeros());
         (self.gone, self.duration) = (0.0, 0.0);
+        self.near.forget();
         Ok(())
     }
 

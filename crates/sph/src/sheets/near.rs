@@ -17,12 +17,9 @@ pub(super) struct Near {
     pub(super) who: Vec<u32>,
     start: Vec<u32>,
     which: Vec<u32>,
-    /// The distance of each of these particles from its nearest sample (m) when it was last looked at, and
-    /// how far things had come towards each other by then (m).
-    nearest: Vec<[f64; 2]>,
+    /// Square of the distance of each of these particles from its nearest sample (m²).
+    pub(super) nearest: Vec<f64>,
     is_known: bool,
-    /// The time of the fluid that is listed (s): at any other it has moved unnoticed.
-    time: f64,
     /// How far a particle and a sample may have come towards each other (m).
     travel: f64,
 }
@@ -33,40 +30,21 @@ impl Near {
         self.is_known = false;
     }
 
-    /// Notes how far (m) samples come towards particles at most.
+    /// Notes how far (m) particles and samples come towards each other at most.
     pub(super) fn travel(&mut self, way: f64) {
         self.travel += way;
     }
 
-    /// Notes how far (m) particles and samples come towards each other until a time of the fluid (s).
-    pub(super) fn travel_until(&mut self, way: f64, time: f64) {
-        self.travel += way;
-        self.time = time;
-    }
-
-    /// The `k`th particle that has samples is that far (m) from the nearest of them.
-    #[inline(always)]
-    pub(super) fn look(&mut self, k: usize, nearest: f64) {
-        self.nearest[k] = [nearest, self.travel];
-    }
-
-    /// At least as far (m) from the `k`th particle its samples are now.
-    #[inline(always)]
-    pub(super) fn at_least(&self, k: usize) -> f64 {
-        let [nearest, travel] = self.nearest[k];
-        nearest - (self.travel - travel)
-    }
-
-    /// Lists the samples within `support` (m) at a time of the fluid (s), unless they are known; `ahead` (m)
-    /// is how far things will come towards each other before the lists are used.
+    /// Lists the samples within `support` (m), unless they are known; `ahead` (m) is how far things
+    /// will come towards each other before the lists are used.
     pub(super) fn list(
         &mut self,
-        (x, time): (&[Point], f64),
+        x: &[Point],
         samples: &[Point],
         [support, spacing, ahead]: [f64; 3],
     ) {
         let margin = MARGIN * spacing;
-        if self.is_known && self.time == time && self.travel + ahead <= margin {
+        if self.is_known && self.travel + ahead <= margin {
             return;
         }
         let reach = support + margin + ahead;
@@ -78,11 +56,7 @@ impl Near {
         self.nearest.clear();
         self.start.clear();
         self.start.push(0);
-        let around = box_around(samples, reach);
         for (i, p) in (0..).zip(x) {
-            if (0..3).any(|c| p[c] < around[0][c] || p[c] > around[1][c]) {
-                continue;
-            }
             let begin = self.which.len();
             let mut nearest = f64::INFINITY;
             for at in self.grid.rows(p).into_iter().flatten() {
@@ -95,10 +69,10 @@ impl Near {
             if self.which.len() > begin {
                 self.who.push(i);
                 self.start.push(self.which.len() as u32);
-                self.nearest.push([nearest.sqrt(), 0.0]);
+                self.nearest.push(nearest);
             }
         }
-        (self.is_known, self.time, self.travel) = (true, time, 0.0);
+        (self.is_known, self.travel) = (true, 0.0);
     }
 
     /// Samples around the `k`th particle that has any.
@@ -106,16 +80,4 @@ impl Near {
     pub(super) fn samples(&self, k: usize) -> &[u32] {
         &self.which[self.start[k] as usize..self.start[k + 1] as usize]
     }
-}
-
-/// The corners of a box around points, larger than that by `reach` (m) on all sides.
-fn box_around(points: &[Point], reach: f64) -> [[f64; 3]; 2] {
-    let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    for p in points {
-        for c in 0..3 {
-            corners[0][c] = corners[0][c].min(p[c] - reach);
-            corners[1][c] = corners[1][c].max(p[c] + reach);
-        }
-    }
-    corners
 }

@@ -19,7 +19,7 @@ impl<R: Restraint> Fluid<R> {
         for sheets in [&mut *old, &mut *new] {
             sheets.start(0.0);
             sheets.forget_particles();
-            sheets.list(&self.laws, (&self.state.x, self.time), 0.0);
+            sheets.list(&self.laws, &self.state.x, 0.0);
             sheets.find_touches(&self.laws, &self.state.x);
         }
         let mut before = old.touches.iter().peekable();

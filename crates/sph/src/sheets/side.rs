@@ -89,7 +89,7 @@ impl Sheets {
             }
             let longest = way.norm() + 2.0 * (surface_way + floor);
             let reach = FARTHEST * self.spacing + longest + surface_way;
-            if self.near.at_least(k) > reach {
+            if self.near.nearest[k] > reach * reach {
                 continue;
             }
             self.triangles_near(k, before, reach, &mut near);
