@@ -60,6 +60,16 @@ pub struct FluidSeconds {
     pub sheets: f64,
 }
 
+/// Speeds up to which particles of a fluid rest, by what the cameras see.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct FluidViewSummary {
+    /// The least (m/s).
+    pub rest_min_m_per_s: f64,
+    /// The greatest (m/s).
+    pub rest_max_m_per_s: f64,
+}
+
 /// The fluid in one frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -94,6 +104,8 @@ pub struct FluidSummary {
     pub stopped: u64,
     /// How often these left a particle no room, so that it may have come through.
     pub squeezed: u64,
+    /// What the cameras made of the thresholds of rest, if these depend on them.
+    pub view: Option<FluidViewSummary>,
     /// Largest density of a particle (kg/m³).
     pub density_max_kg_per_m3: f64,
     /// Kinetic energy of the momenta (J).

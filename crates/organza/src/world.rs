@@ -11,6 +11,7 @@ mod tests;
 
 use crate::build::{BuildError, Built, Garment, build};
 use crate::contact::{ContactSettings, Crossings, SurfaceContact};
+use crate::eyes::Eyes;
 use crate::fluid::Water;
 use crate::handles::{Handles, by_name};
 use crate::obstacle::Obstacle;
@@ -112,6 +113,8 @@ pub struct World {
     wet: Vec<f64>,
     /// Who may rest, if anybody may.
     restraints: Option<Restraints>,
+    /// The cameras that thresholds of rest depend on, of cloth or fluid; absent where none does.
+    eyes: Option<Eyes>,
     /// Of the last frame; the same as long as all sleeps.
     measured: Option<Measured>,
     /// What is worked out once per mesh; absent after the mesh has changed.
@@ -186,6 +189,7 @@ impl World {
             drag: wind.drag,
         });
         let together = fluid.as_ref().map_or(0, |water| water.steps_among_others(scene.frame_s()));
+        let restraints = Restraints::new(scene);
         let mut world = World {
             frame: 0,
             remeshing: Remeshing::new(scene, &garments, &cloth.mesh),
@@ -209,7 +213,8 @@ impl World {
             },
             solver: solver.build(settings),
             wet: Vec::new(),
-            restraints: Restraints::new(scene),
+            eyes: rest::eyes(scene, restraints.as_ref()),
+            restraints,
             measured: None,
             prepared: None,
             potential_energy_j: 0.0,
@@ -377,7 +382,9 @@ impl World {
             restraint.energy_j = measured.energy;
         }
         report.yielded = yielded;
-        report.fluid = fluid;
+        // After the look ahead: what is told of particles and what is recorded of them is the same.
+        let water = self.fluid.as_ref().zip(fluid);
+        report.fluid = water.map(|(water, done)| water.summary(&done, self.frame_s));
         report.warnings = std::mem::take(&mut self.tangled.warnings);
         Ok(report)
     }

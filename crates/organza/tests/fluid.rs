@@ -109,6 +109,24 @@ fn permanent_flow_keeps_its_level() {
     assert_eq!(n, 525 + emitted - drained);
 }
 
+/// Layers of a block as its weight presses them: the scene's is that of the suite of benchmarks.
+#[test]
+fn a_pressed_block_is_lower() {
+    let top = |world: &World| {
+        let particles = world.fluid.as_ref().unwrap().fluid.particles();
+        particles.map(|p| p.position.z).fold(0.0, f64::max)
+    };
+    let flow = world(&own("permanent-flow.json5", &[]));
+    let plain = world(&own("permanent-flow.json5", &["fluids[0].blocks[0].pressed=false"]));
+    let sunk = 9.81 * 1.5 * 1.5 / (2.0 * 40.0 * 40.0);
+    assert!(((top(&plain) - top(&flow)) / sunk - 1.0).abs() < 0.1, "{}", top(&flow));
+    let suite = sph::scenes::permanent_flow(0).unwrap().fluid;
+    let places = |fluid: Vec<sph::Particle>| fluid.iter().map(|p| p.position).collect::<Vec<_>>();
+    let ours = places(flow.fluid.unwrap().fluid.particles_by_id());
+    let off = ours.iter().zip(places(suite.particles_by_id())).map(|(a, b)| (a - b).norm());
+    assert!(off.fold(0.0, f64::max) < 1e-12);
+}
+
 #[test]
 fn what_a_scene_does_not_need_is_not_there() {
     let mut water = world(&scene(&basin(0.2, "", "")));
@@ -210,6 +228,16 @@ fn bad_values_are_named() {
         (format!("spacing_m: 0.1, boxes: [{{min: [0, 0, 0], max: [1, 1, 1], open: ['up']}}], {block}"), "fluids[0].boxes[0].open[0]: unknown choice `up`, expected one of -x, +x, -y, +y, -z, +z"),
         (format!("spacing_m: 0.1, restraint: {{restrain_below_m_per_s: 0.1}}, {block}"), "fluids[0].restraint: key `restore_above_m_per_s` is missing"),
         (format!("spacing_m: 0.1, restraint: {{policy: 'automatic', error_m: 0.1, duration_s: 1, restrain_below_j: 1}}, {block}"), "fluids[0].restraint.restrain_below_j: belongs to another `policy`"),
+        (format!("spacing_m: 0.1, restraint: {{policy: 'view', restrain_below_px_per_frame: 0.1, restore_above_px_per_frame: 1}}, {block}"), "fluids[0].restraint.policy: the scene has no `camera` to look through"),
+        (format!("spacing_m: 0.1, restraint: {{policy: 'automatic-view', error_px: 1}}, {block}"), "fluids[0].restraint.policy: the scene has no `camera` to look through"),
+        (format!("spacing_m: 0.1, restraint: {{policy: 'automatic-view'}}, {block}"), "fluids[0].restraint: key `error_px` is missing"),
+        (format!("spacing_m: 0.1, restraint: {{policy: 'automatic-view', error_px: -1}}, {block}"), "fluids[0].restraint.error_px: must be zero or more and finite, got -1"),
+        (format!("spacing_m: 0.1, restraint: {{policy: 'automatic-view', law: 'smooth', error_px: 1}}, {block}"), "fluids[0].restraint.law: the policy `automatic-view` has the law `ramp`"),
+        (format!("spacing_m: 0.1, restraint: {{policy: 'view', restrain_below_px_per_frame: 0.1}}, {block}"), "fluids[0].restraint: key `restore_above_px_per_frame` is missing"),
+        (format!("spacing_m: 0.1, restraint: {{policy: 'view', restrain_below_px_per_frame: 0.1, restore_above_px_per_frame: 1, most_m_per_s: -1}}, {block}"), "fluids[0].restraint.most_m_per_s: must be zero or more and finite, got -1"),
+        (format!("spacing_m: 0.1, restraint: {{restrain_below_m_per_s: 0.1, restore_above_m_per_s: 1, most_m_per_s: 1}}, {block}"), "fluids[0].restraint.most_m_per_s: belongs to another `policy`"),
+        (format!("spacing_m: 0.1, restraint: {{policy: 'sight'}}, {block}"), "fluids[0].restraint.policy: unknown choice `sight`"),
+        ("spacing_m: 0.1, blocks: [{min: [0, 0, 0], max: [1, 1, 1], pressed: 1}]".into(), "fluids[0].blocks[0].pressed: "),
         (format!("spacing_m: 0.1, colour: 1, {block}"), "fluids[0].colour: unknown key `colour`"),
         ("spacing_m: 0.1, emitters: [{position: [0, 0, 0], direction: [0, 0, 0], size_m: [1, 1], speed_m_per_s: 1}]".into(), "fluids[0].emitters[0].direction: has no length"),
     ] {
@@ -254,7 +282,12 @@ fn record(loaded: &Loaded, load: &LoadOptions, path: &Path, n: u32) {
 fn a_continued_run_has_the_bits_of_an_uninterrupted_one() {
     let folder = folder("fluid-resumed");
     let (whole, parts) = (folder.join("whole.mcap"), folder.join("parts.mcap"));
-    let sets = ["fluids[0].spacing_m=0.1", "fluids[0].restraint.restrain_below_m_per_s=0.15"];
+    let sets = [
+        "fluids[0].spacing_m=0.1",
+        "fluids[0].restraint.restrain_below_m_per_s=0.15",
+        "fluids[0].restraint.restore_above_m_per_s=0.2",
+        "fluids[0].restraint.inactivity_m_per_s=0",
+    ];
     let loaded = own("permanent-flow.json5", &sets);
     let load = LoadOptions { sets: sets.map(str::to_owned).to_vec(), allow_unsupported: false };
     record(&loaded, &load, &whole, 14);

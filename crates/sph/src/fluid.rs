@@ -17,7 +17,8 @@ use arps::Restraint;
 use nalgebra::Vector3;
 use std::time::Instant;
 
-/// Particles of one fluid between walls. `R` is the policy that restrains them; `()` restrains nothing.
+/// Particles of one fluid between walls. `R` is the policy that restrains them; `()` restrains nothing. It
+/// is asked about every particle in every step, with the lasting number for its index.
 #[derive(Clone, Debug)]
 pub struct Fluid<R = ()> {
     pub(crate) settings: FluidSettings,
@@ -123,6 +124,19 @@ impl<R: Restraint> Fluid<R> {
     /// The same fluid without any policy, although it is of a type that could have one.
     pub fn released<Q: Restraint>(self) -> Fluid<Q> {
         self.with_restraint(None)
+    }
+
+    /// From the next step on the policy is this one; nothing where there has been none. Whoever rests wakes
+    /// in that step if the new one wants it.
+    pub fn change_policy(&mut self, policy: R) {
+        if let Some((old, _)) = &mut self.restraint {
+            *old = policy;
+        }
+    }
+
+    /// The policy, if there is one.
+    pub fn policy(&self) -> Option<&R> {
+        self.restraint.as_ref().map(|(policy, _)| policy)
     }
 
     fn with_restraint<Q>(self, restraint: Option<(Q, RestraintSettings)>) -> Fluid<Q> {
@@ -385,9 +399,10 @@ impl<R: Restraint> Fluid<R> {
             by_sheets,
             tolerance: settings.pressure_tolerance,
             gravity: self.settings.gravity.into(),
+            may_leave: settings.sweep_above < 1.0,
             changes,
         };
-        let looked = update.run();
+        let Some(looked) = update.run() else { return false };
         report.changed += looked.changed;
         report.density_pairs += looked.density_pairs;
         report.force_pairs += looked.force_pairs;

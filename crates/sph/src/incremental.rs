@@ -33,14 +33,15 @@ const STALE: u8 = 16;
 /// The part of the particles from which on it is not worth looking for those that no change has
 /// reached (1).
 const MOST_CHANGED: f64 = 0.4;
+/// The part of the particles from which on, if movers are next to them, a sweep over everything costs less
+/// (1), and of how many one is asked: scattered movers are next to most particles even where they are few.
+const MOST_TOUCHED: f64 = 0.85;
+const ASKED: usize = 8;
 /// Time to bring a particle's pairs up to date, over that to compute its sums anew (1): densities, of
-/// which both ends of a pair get the difference, and accelerations. Measured.
-const DENSITY_COST: f64 = 2.0;
+/// which both ends of a pair get the difference, and accelerations. Measured. New sums of densities find the
+/// active neighbours, which accelerations need and the update of pairs makes useless.
+const DENSITY_COST: f64 = 5.0;
 const FORCE_COST: f64 = 2.5;
-/// The same for densities where so many move, as a part of all (1), that accelerations will be computed
-/// anew: these need the active neighbours, which new sums find and the update of pairs makes useless.
-const MANY_MOVERS: f64 = 0.1;
-const DENSITY_COST_OF_MANY: f64 = 5.0;
 
 /// What is remembered from step to step.
 #[derive(Clone, Debug, Default)]
@@ -92,15 +93,22 @@ pub(crate) struct Update<'a> {
     pub(crate) tolerance: f64,
     /// Acceleration of gravity (m/s²).
     pub(crate) gravity: [f64; 3],
+    /// Whether to leave it to a sweep where that costs less.
+    pub(crate) may_leave: bool,
     pub(crate) changes: &'a mut Changes,
 }
 
 impl Update<'_> {
-    /// Brings densities and accelerations up to date.
-    pub(crate) fn run(mut self) -> Looked {
+    /// Brings densities and accelerations up to date. `None`, and nothing is changed, where it would take
+    /// longer than to compute them anew.
+    pub(crate) fn run(mut self) -> Option<Looked> {
         self.changes.marks.resize(self.state.len(), 0);
         self.changes.wall_marks.resize(self.walls.x.len(), 0);
         self.mark_movers();
+        if self.may_leave && self.movers_are_everywhere() {
+            self.changes.clear_marks();
+            return None;
+        }
         let density_pairs = match self.touched_by_movers() {
             Some(pairs) => self.densities_anew(pairs),
             None => lanes::run(DensityChanges(&mut self)),
@@ -112,7 +120,18 @@ impl Update<'_> {
         };
         let changed = self.changes.changed.len() as u64;
         self.changes.finish(self.state, self.walls);
-        Looked { density_pairs, force_pairs, changed }
+        Some(Looked { density_pairs, force_pairs, changed })
+    }
+
+    /// True if there are movers next to most particles, by the word of some of these.
+    fn movers_are_everywhere(&self) -> bool {
+        let marks = &self.changes.marks;
+        let moves = |i: &u32| marks[*i as usize] & MOVED != 0;
+        let asked = (0..marks.len()).step_by(ASKED);
+        let n = asked.len();
+        let touched = asked
+            .filter(|&i| marks[i] & MOVED != 0 || self.neighbours.candidates(i).iter().any(moves));
+        touched.count() as f64 > MOST_TOUCHED * n as f64
     }
 
     /// Marks who has moved or stopped.
@@ -135,10 +154,7 @@ impl Update<'_> {
     /// together. Returns the number of their pairs.
     fn touched_by_movers(&mut self) -> Option<u64> {
         let Changes { marks, touched, wall_marks, touched_walls, .. } = &mut *self.changes;
-        let n_movers = self.movers.len() as f64;
-        let are_many = n_movers > MANY_MOVERS * marks.len() as f64;
-        let cost = if are_many { DENSITY_COST_OF_MANY } else { DENSITY_COST };
-        let most = (cost * n_movers) as usize;
+        let most = (DENSITY_COST * self.movers.len() as f64) as usize;
         let (n_before, n_walls_before) = (touched.len(), touched_walls.len());
         for &mover in self.movers {
             touch(self.neighbours.candidates(mover as usize), TOUCHED, marks, touched);
@@ -457,6 +473,11 @@ impl Changes {
         for &j in &self.changed_walls {
             self.wall_terms[j as usize] = walls.x[j as usize][3];
         }
+        self.clear_marks();
+    }
+
+    /// Removes all marks.
+    fn clear_marks(&mut self) {
         for &i in self.touched.iter().chain(&self.changed).chain(&self.stale) {
             self.marks[i as usize] = 0;
         }

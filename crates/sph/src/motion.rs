@@ -93,7 +93,8 @@ impl Moved {
         self.u.extend(particles.map(|(i, ((x, w), (u, a)))| {
             let was_still = squared(w) == 0.0;
             let position = Vector3::new(x[0], x[1], x[2]);
-            let held = policy.at(&Particle { index: i, mass, x: position, time });
+            let index = state.id[i] as usize;
+            let held = policy.at(&Particle { index, mass, x: position, time });
             any_held |= !held.is_free();
             let u = if bleeds && was_still && !held.is_free() {
                 let bled = |k: usize| u[k] + (tau * a[k] - u[k]) * lost;

@@ -14,7 +14,8 @@ pub struct RestraintSettings {
     pub inactivity: f64,
     /// A change of pressure up to this leaves accelerations as they are (Pa).
     pub pressure_tolerance: f64,
-    /// Everything is computed anew where more than this part of the particles moves (1). Zero: always.
+    /// Everything is computed anew where more than this part of the particles moves (1), or fewer that are
+    /// next to nearly all others. Zero: always; one: never.
     pub sweep_above: f64,
 }
 

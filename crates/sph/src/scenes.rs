@@ -43,6 +43,28 @@ pub fn block(n: [usize; 3], corner: Vector3<f64>, spacing: f64, seed: u64) -> Ve
     x
 }
 
+/// Brings the layers of a block of still fluid as close as the weight of those above presses them, so that
+/// sound does not go up and down in it from the start on. `bounds` is the block without weight (m), of which the
+/// lowest layer stays where it is.
+///
+/// At the height s in the block without weight the pressure is ρ₀ g (H − s); by Tait's equation the height
+/// with weight is z with dz/ds = ρ₀/ρ = (1 + 7 g (H − s)/c²)^(−1/7).
+pub fn press(positions: &mut [Vector3<f64>], settings: &FluidSettings, bounds: &Bounds) {
+    let g = settings.gravity.norm();
+    let Some(down) = settings.gravity.try_normalize(0.0) else { return };
+    let (low, high) = (bounds.min.component_mul(&down), bounds.max.component_mul(&down));
+    let (top, bottom) = (low.inf(&high).sum(), low.sup(&high).sum());
+    let c_squared = settings.sound_speed * settings.sound_speed;
+    // −∫ dz/ds over the depth.
+    let below =
+        |depth: f64| c_squared / (6.0 * g) * (1.0 + 7.0 * g * depth / c_squared).powf(6.0 / 7.0);
+    for x in positions {
+        let depth = x.dot(&down) - top;
+        let height = below(bottom - top) - below(depth);
+        *x -= down * (height - (bottom - top - depth));
+    }
+}
+
 fn at_rest(
     settings: FluidSettings,
     walls: Walls,
@@ -89,7 +111,8 @@ pub fn block_fall(layers: usize, seed: u64) -> Result<Scene, FluidError> {
 }
 
 /// Manteaux2013 Table 2: water pours into one end of a full shaft, 0.7 m long and 1.5 m deep, and is
-/// skimmed off at the other, 30 s, about 4,240 particles. Deep below the current the water rests.
+/// skimmed off at the other, 30 s, about 4,240 particles. Deep below the current the water rests, from the
+/// start on.
 ///
 /// # Errors
 /// None but for mistakes in the scene itself.
@@ -105,7 +128,9 @@ pub fn permanent_flow(seed: u64) -> Result<Scene, FluidError> {
         sound_speed: 40.0,
         ..FluidSettings::water(spacing, size[2], inside.grown(0.2))
     };
-    let positions = block(n, Vector3::zeros(), spacing, seed);
+    let mut positions = block(n, Vector3::zeros(), spacing, seed);
+    let block = Bounds::new(Vector3::zeros(), Vector3::from(size));
+    press(&mut positions, &settings, &block);
     let mut fluid = at_rest(settings, walls, &positions)?;
     let nozzle = Vector3::new(2.0 * spacing, 0.5 * size[1], size[2] + 2.0 * spacing);
     fluid.add_emitter(Emitter::new(nozzle, Vector3::x(), [2.0 * spacing, spacing], 0.5)?)?;

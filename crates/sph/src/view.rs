@@ -51,7 +51,8 @@ impl<R: Restraint> Fluid<R> {
         (0..self.len()).map(move |i| {
             let Some((policy, settings)) = &self.restraint else { return Motion::Full };
             let x = vector(&self.state.x[i]);
-            let held = policy.at(&arps::Particle { index: i, mass, x, time });
+            let index = self.state.id[i] as usize;
+            let held = policy.at(&arps::Particle { index, mass, x, time });
             let p = vector(&self.state.u[i]) * mass;
             match held.motion(&p) {
                 Motion::Transition if held.velocity(&p).norm() < settings.inactivity => {

@@ -72,6 +72,36 @@ fn nothing_leaves_a_closed_box() {
     assert!(fluid.particles().all(|p| reach.contains(&p.position)));
 }
 
+/// A million steps of a few particles that are thrown about: gravity turns over again and again. The example
+/// `closed_box` does the same with more of them.
+#[test]
+fn nothing_leaves_a_closed_box_in_a_million_steps() {
+    let inside = common::tank([3, 3, 5]);
+    let mut x = scenes::block([2, 2, 4], Vector3::zeros(), common::SPACING, 3);
+    let mut v = vec![Vector3::zeros(); x.len()];
+    let mut gravity = -9.81;
+    let (mut steps, mut fastest) = (0, 0.0);
+    while steps < 1_000_000 {
+        let mut walls = Walls::none();
+        walls.add_box(&inside, Open::default(), common::SPACING).unwrap();
+        let settings = FluidSettings {
+            gravity: Vector3::new(0.0, 0.0, gravity),
+            // Half a spacing: as far as the first layer of the wall. Beyond it the step fails.
+            ..FluidSettings::water(common::SPACING, 0.25, inside.grown(0.5 * common::SPACING))
+        };
+        let mut fluid = Fluid::new(settings, walls, &x, &v).unwrap();
+        for _ in 0..1_000 {
+            fluid.step(fluid.step_bound()).unwrap();
+        }
+        steps += 1_000;
+        assert_eq!(fluid.len(), 16);
+        (x, v) = fluid.particles().map(|p| (p.position, p.velocity)).unzip();
+        fastest = v.iter().map(Vector3::norm).fold(fastest, f64::max);
+        gravity = -gravity;
+    }
+    assert!(fastest > 1.0, "they were thrown about: {fastest} m/s");
+}
+
 #[test]
 fn steps_beyond_the_bound_are_refused_and_can_be_divided() {
     let mut fluid = common::block_in_box([4, 4, 6], [8, 4, 8], 1);
@@ -91,8 +121,42 @@ fn steps_beyond_the_bound_are_refused_and_can_be_divided() {
         assert!(report.steps >= 10);
         assert!((fluid.time() - time - 10.0 * bound).abs() < 1e-12);
     }
+    let reach = common::tank([8, 4, 8]).grown(0.5 * common::SPACING);
+    assert!(fluid.particles().all(|p| reach.contains(&p.position)));
     let fastest = fluid.particles().map(|p| p.velocity.norm()).fold(0.0, f64::max);
     assert!(fastest < 4.0, "{fastest} m/s after a fall of 0.3 m");
+}
+
+/// A column that its own weight has pressed bounces far less than one laid out at the spacing.
+#[test]
+fn a_pressed_column_does_not_bounce() {
+    let inside = common::tank([6, 6, 30]);
+    let block = common::tank([6, 6, 24]);
+    let kinetic = |is_pressed: bool| {
+        let mut walls = Walls::none();
+        walls.add_box(&inside, Open::TOP, common::SPACING).unwrap();
+        let settings = FluidSettings::water(common::SPACING, block.size().z, inside.grown(1.0));
+        let mut x = scenes::block([6, 6, 24], Vector3::zeros(), common::SPACING, 0);
+        let lattice = x.clone();
+        if is_pressed {
+            scenes::press(&mut x, &settings, &block);
+            // The lowest stays, the highest sinks by what the pressure takes: about g H²/2c².
+            let sunk = |k: usize| lattice[k].z - x[k].z;
+            let height = block.size().z;
+            let expected = 9.81 * height * height / (2.0 * settings.sound_speed.powi(2));
+            assert!((sunk(lattice.len() - 1) / expected - 1.0).abs() < 0.1, "{expected}");
+            assert!(sunk(0) > 0.0 && sunk(0) < 0.1 * expected);
+        }
+        let mut fluid = Fluid::new(settings, walls, &x, &vec![Vector3::zeros(); x.len()]).unwrap();
+        let mut most: f64 = 0.0;
+        for _ in 0..40 {
+            fluid.advance(0.005).unwrap();
+            most = most.max(fluid.energy().kinetic);
+        }
+        most
+    };
+    let (pressed, lattice) = (kinetic(true), kinetic(false));
+    assert!(pressed < 0.5 * lattice, "{pressed} J and {lattice} J");
 }
 
 #[test]

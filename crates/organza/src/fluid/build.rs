@@ -1,7 +1,6 @@
 //! From the fluid of a scene to particles between walls.
 
 use super::meeting::Meeting;
-use super::policy::{self, Policy};
 use super::{Water, settings};
 use crate::build::Garment;
 use crate::obstacle::Obstacle;
@@ -9,7 +8,7 @@ use crate::scene;
 use crate::scene::format::{Basin, Block, Face};
 use mesh_core::ClothState;
 use nalgebra::Vector3;
-use sph::{Bounds, Emitter, Fluid, FluidError, Open, Sink, Walls, scenes};
+use sph::{Bounds, Emitter, Fluid, FluidError, FluidSettings, Open, Sink, Walls, scenes};
 
 /// How much denser than at rest a particle may be at the start (1). Where fluid stands in fluid or in
 /// a wall it would burst apart in the first step.
@@ -65,7 +64,7 @@ pub(crate) fn water(
     let fluid_settings = settings::fluid(of, &around);
     let (mut x, mut v) = (Vec::new(), Vec::new());
     for block in &of.file.blocks {
-        let free = particles(block, spacing).into_iter();
+        let free = particles(block, spacing, &fluid_settings).into_iter();
         x.extend(free.filter(|x| bodies.iter().all(|body| !is_inside(body, x))));
         v.resize(x.len(), Vector3::from(block.velocity));
     }
@@ -98,22 +97,26 @@ pub(crate) fn water(
         fluid.add_sink(Sink(settings::bounds(sink.min, sink.max)));
     }
     let (name, is_restrained) = (of.name.clone(), of.file.restraint.is_some());
-    let fluid = match &of.file.restraint {
+    let fluid = match of.policy.clone().zip(of.file.restraint.as_ref()) {
         None => fluid.released(),
-        Some(restraint) => {
-            let wrong = |what: String| ("restraint".to_owned(), what);
-            let policy: Policy = policy::of(restraint).map_err(|e| wrong(e.to_string()))?;
+        Some((policy, restraint)) => {
             let settings = settings::restraint(restraint, fluid.settings());
-            fluid.restrained(policy, settings).map_err(|e| wrong(e.to_string()))?
+            fluid.restrained(policy, settings).map_err(at("restraint"))?
         }
     };
     Ok(Water { name, fluid, is_restrained, meeting })
 }
 
 /// Positions of the particles of a block (m).
-fn particles(block: &Block, spacing: f64) -> Vec<Vector3<f64>> {
+fn particles(block: &Block, spacing: f64, settings: &FluidSettings) -> Vec<Vector3<f64>> {
     let n = settings::lattice(block, spacing);
-    scenes::block(n, Vector3::from(block.min), spacing, u64::from(block.seed))
+    let mut x = scenes::block(n, Vector3::from(block.min), spacing, u64::from(block.seed));
+    if block.pressed {
+        let size = Vector3::from(n.map(|n| n as f64 * spacing));
+        let min = Vector3::from(block.min);
+        scenes::press(&mut x, settings, &Bounds::new(min, min + size));
+    }
+    x
 }
 
 /// Whether a body surrounds a point at the start: the solid angle of its triangles, seen from there, is

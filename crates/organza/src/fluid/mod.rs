@@ -12,9 +12,10 @@ pub use policy::Policy;
 
 use crate::build::Garment;
 use crate::obstacle::Obstacle;
-use crate::report::{FluidSeconds, FluidSummary};
-use arps::Motion;
+use crate::report::{FluidSeconds, FluidSummary, FluidViewSummary};
+use arps::{Motion, Restraint};
 use mesh_core::{ClothState, World3};
+use sizing_view::ViewRestraint;
 use sph::{Fluid, FluidError, StepReport};
 
 /// The fluid of a world.
@@ -61,6 +62,37 @@ impl Water {
     /// Steps of cloth and fluid together in a time (s); 0 if they do not meet and no body moves.
     pub(crate) fn steps_among_others(&self, time: f64) -> u32 {
         self.meeting.as_ref().map_or(0, |meeting| meeting.n_steps(time, self.fluid.settings()))
+    }
+
+    /// Takes thresholds for the frame to come from what cameras see, if they depend on it: `pixel_speeds` are
+    /// those of positions (m).
+    pub(crate) fn look(&mut self, pixel_speeds: impl FnOnce(&[World3]) -> Vec<f64>) {
+        let Some(Policy::View(ViewRestraint { thresholds, .. })) = self.fluid.policy() else {
+            return;
+        };
+        let thresholds = *thresholds;
+        let (names, positions): (Vec<usize>, Vec<World3>) =
+            self.fluid.particles().map(|p| (p.id as usize, p.position)).unzip();
+        let mut by_name = vec![0.0; names.iter().max().map_or(0, |last| last + 1)];
+        for (name, speed) in names.into_iter().zip(pixel_speeds(&positions)) {
+            by_name[name] = speed;
+        }
+        self.fluid.change_policy(Policy::View(ViewRestraint { thresholds, pixel_speeds: by_name }));
+    }
+
+    /// What cameras make of the thresholds, if they depend on that.
+    fn seen(&self) -> Option<FluidViewSummary> {
+        let Some(Policy::View(policy)) = self.fluid.policy() else { return None };
+        let (mass, time) = (self.fluid.particle_mass(), self.fluid.time());
+        let mut all =
+            FluidViewSummary { rest_min_m_per_s: f64::INFINITY, ..FluidViewSummary::default() };
+        for p in self.fluid.particles() {
+            let asked = arps::Particle { index: p.id as usize, mass, x: p.position, time };
+            let rest = policy.at(&asked).p_r() / mass;
+            all.rest_min_m_per_s = all.rest_min_m_per_s.min(rest);
+            all.rest_max_m_per_s = all.rest_max_m_per_s.max(rest);
+        }
+        (!self.fluid.is_empty()).then_some(all)
     }
 
     /// Follows the remeshing of cloth at a time (s).
@@ -125,6 +157,7 @@ impl Water {
             drained: done.drained,
             stopped: done.stopped,
             squeezed: done.squeezed,
+            view: self.seen(),
             density_max_kg_per_m3: self.fluid.particles().map(|p| p.density).fold(0.0, f64::max),
             kinetic_energy_j: energy.kinetic,
             internal_energy_j: energy.internal,

@@ -1,15 +1,18 @@
 //! The policies of restraint that a scene may ask for.
 
-use crate::scene::format::{FluidRestraint, RestraintLaw, RestraintPolicy};
+use crate::scene::format::{FLUID_MOST_M_PER_S, FluidRestraint, RestraintLaw, RestraintPolicy};
 use arps::{Automatic, Held, Kinetic, Law, Particle, Restraint, Speed, ThresholdError};
+use sizing_view::{PixelThresholds, ViewRestraint};
 
 /// A policy of a scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Policy {
     /// By speed.
     Speed(Speed),
     /// By kinetic energy.
     Kinetic(Kinetic),
+    /// By motion in the picture; the speeds of a pixel are by the lasting numbers of the particles.
+    View(ViewRestraint),
 }
 
 impl Restraint for Policy {
@@ -18,15 +21,26 @@ impl Restraint for Policy {
         match self {
             Policy::Speed(policy) => policy.at(particle),
             Policy::Kinetic(policy) => policy.at(particle),
+            Policy::View(policy) => policy.at(particle),
         }
     }
 }
 
-/// The policy that `restraint` describes. Thresholds that are not given are those of no restraint.
+/// What thresholds chosen by an error depend on of the scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Run {
+    /// Simulated time (s).
+    pub(crate) duration: f64,
+    /// Time from frame to frame (s).
+    pub(crate) frame_s: f64,
+}
+
+/// The policy that `restraint` describes. Thresholds that are not given are those of no restraint. One by
+/// view restrains nothing before it has seen the particles.
 ///
 /// # Errors
 /// If the thresholds do not fit each other or the law.
-pub(crate) fn of(restraint: &FluidRestraint) -> Result<Policy, ThresholdError> {
+pub(crate) fn of(restraint: &FluidRestraint, run: Run) -> Result<Policy, ThresholdError> {
     let law = match restraint.law {
         RestraintLaw::Ramp => Law::Ramp,
         RestraintLaw::Soft => Law::Soft,
@@ -36,6 +50,12 @@ pub(crate) fn of(restraint: &FluidRestraint) -> Result<Policy, ThresholdError> {
         RestraintLaw::MomentumSpline => Law::MomentumSpline,
     };
     let value = |number: Option<f64>| number.unwrap_or(0.0);
+    let duration = restraint.duration_s.unwrap_or(run.duration);
+    let view = |law, rest, full| {
+        let most = restraint.most_m_per_s.unwrap_or(FLUID_MOST_M_PER_S);
+        let thresholds = PixelThresholds::new(law, rest, full, most)?;
+        Ok(Policy::View(ViewRestraint { thresholds, pixel_speeds: Vec::new() }))
+    };
     Ok(match restraint.policy {
         RestraintPolicy::Speed => Policy::Speed(Speed::with_law(
             law,
@@ -47,8 +67,19 @@ pub(crate) fn of(restraint: &FluidRestraint) -> Result<Policy, ThresholdError> {
             value(restraint.restrain_below_j),
             value(restraint.restore_above_j),
         )?),
-        RestraintPolicy::Automatic => Policy::Speed(
-            Automatic::for_error(value(restraint.error_m), value(restraint.duration_s))?.speed,
-        ),
+        RestraintPolicy::Automatic => {
+            Policy::Speed(Automatic::for_error(value(restraint.error_m), duration)?.speed)
+        }
+        RestraintPolicy::View => view(
+            law,
+            value(restraint.restrain_below_px_per_frame),
+            value(restraint.restore_above_px_per_frame),
+        )?,
+        RestraintPolicy::AutomaticView => {
+            // The same bound in pixels, with a frame for the unit of time.
+            let frames = duration / run.frame_s;
+            let speed = Automatic::for_error(value(restraint.error_px), frames)?.speed;
+            view(speed.law(), speed.v_r(), speed.v_f())?
+        }
     })
 }

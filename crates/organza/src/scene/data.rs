@@ -8,6 +8,7 @@ use super::format::{
 use super::motion::{Motion, Transform};
 use crate::contact::ContactSettings;
 use crate::fabric::Fabric;
+use crate::fluid::Policy;
 use sizing_view::{CameraPath, ViewSettings};
 
 /// Everything a run needs to know, except the bytes of mesh files.
@@ -234,6 +235,8 @@ pub struct Fluid {
     pub cloths: Vec<usize>,
     /// Acceleration of gravity (m/s²).
     pub gravity: [f64; 3],
+    /// By what particles are restrained, if they are.
+    pub policy: Option<Policy>,
     /// The rest, as written.
     pub file: FluidFile,
 }

@@ -1,9 +1,9 @@
 //! The fluid's part of a frame.
 
 use super::{StepError, World};
-use crate::report::{FluidSummary, Seconds};
+use crate::report::Seconds;
 use cloth_dynamics::{SolveReport, Step};
-use sph::FluidError;
+use sph::{FluidError, StepReport};
 use std::time::Instant;
 
 impl World {
@@ -12,13 +12,13 @@ impl World {
         &mut self,
         frame: u64,
         seconds: &mut Seconds,
-    ) -> Result<Option<FluidSummary>, StepError> {
+    ) -> Result<Option<StepReport>, StepError> {
         let Some(water) = &mut self.fluid else { return Ok(None) };
         let clock = Instant::now();
         let done = water.advance(self.frame_s);
         let done = done.map_err(|source| StepError::Fluid { frame, source })?;
         seconds.fluid = clock.elapsed().as_secs_f64();
-        Ok(Some(water.summary(&done, self.frame_s)))
+        Ok(Some(done))
     }
 
     /// A step of cloth and of the fluid that meets it, or meets bodies that move.
@@ -67,7 +67,7 @@ impl World {
     }
 
     /// What the fluid did in a frame of steps together.
-    pub(super) fn fluid_among_others(&mut self) -> Option<FluidSummary> {
+    pub(super) fn fluid_among_others(&mut self) -> Option<StepReport> {
         let water = self.fluid.as_mut()?;
         let done = water.meeting.as_mut()?.report();
         if done.squeezed > 0 {
@@ -77,6 +77,6 @@ impl World {
                 done.squeezed
             ));
         }
-        Some(water.summary(&done, self.frame_s))
+        Some(done)
     }
 }

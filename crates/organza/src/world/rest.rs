@@ -3,12 +3,12 @@
 use super::World;
 use crate::build::Garment;
 use crate::eyes::Eyes;
-use crate::obstacle::Obstacle;
+use crate::fluid::Policy;
 use crate::report::{RestraintSummary, StretchRange};
 use crate::scene::{Scene, Thresholds};
 use arps::{Held, Motion, Particle, Restraint};
 use cloth_dynamics::{RestReport, RestingPolicy};
-use mesh_core::ClothState;
+use mesh_core::{ClothState, World3};
 use sizing_view::pixel_speeds;
 use std::sync::Arc;
 use std::time::Instant;
@@ -17,14 +17,8 @@ use std::time::Instant;
 pub(super) struct Restraints {
     by_garment: Vec<Thresholds>,
     bleeding: Option<f64>,
-    /// Absent where no threshold depends on a camera.
-    sight: Option<Sight>,
-}
-
-/// What thresholds take of the cameras.
-struct Sight {
-    eyes: Eyes,
-    /// Speed of a pixel per frame for every vertex of the mesh (m/s), for the coming frame.
+    /// Speed of a pixel per frame for every vertex of the mesh (m/s), for the coming frame; empty where
+    /// no threshold depends on a camera.
     pixel_speeds: Arc<Vec<f64>>,
 }
 
@@ -37,28 +31,20 @@ impl Restraints {
         let own = |cloth: &crate::scene::Cloth| cloth.restraint.unwrap_or(scene.restraint);
         let by_garment: Vec<Thresholds> = scene.cloths.iter().map(own).collect();
         let any = by_garment.iter().any(|thresholds| *thresholds != Thresholds::None);
-        let looks = by_garment.iter().any(|thresholds| matches!(thresholds, Thresholds::View(_)));
-        let eyes = || {
-            let view = scene.view.clone().unwrap_or_default();
-            let eyes = Eyes::new(scene, &view)?.ahead(FRAMES_OF_MOTION);
-            Some(Sight { eyes, pixel_speeds: Arc::default() })
-        };
-        let sight = looks.then(eyes).flatten();
-        any.then_some(Restraints { by_garment, bleeding: scene.bleeding_s, sight })
+        let pixel_speeds = Arc::default();
+        any.then_some(Restraints { by_garment, bleeding: scene.bleeding_s, pixel_speeds })
     }
 
-    /// Looks at the cloth through the cameras of the frame that begins at `time` (s); true if that has
-    /// changed any threshold.
-    fn look(&mut self, cloth: &ClothState, time: f64, obstacles: &[Obstacle]) -> bool {
-        let Some(sight) = &mut self.sight else { return false };
-        let samples = sight.eyes.samples(cloth, time, obstacles);
-        let frame = sight.eyes.frame_s();
-        let speeds = pixel_speeds(&cloth.x, &samples, frame, sight.eyes.settings());
-        let speeds =
-            speeds.expect("a window has its camera, and the scene's settings have been checked");
-        let changed = *sight.pixel_speeds != speeds;
+    /// True if a threshold depends on the cameras.
+    fn looks(&self) -> bool {
+        self.by_garment.iter().any(|thresholds| matches!(thresholds, Thresholds::View(_)))
+    }
+
+    /// Takes what the cameras see of every vertex; true if that has changed any threshold.
+    fn look(&mut self, pixel_speeds: Vec<f64>) -> bool {
+        let changed = *self.pixel_speeds != pixel_speeds;
         if changed {
-            sight.pixel_speeds = Arc::new(speeds);
+            self.pixel_speeds = Arc::new(pixel_speeds);
         }
         changed
     }
@@ -70,12 +56,20 @@ impl Restraints {
             let garment = garments.partition_point(|garment| garment.panels.end <= *panel);
             corners.iter().for_each(|&i| of_vertex[i as usize] = garment as u32);
         }
-        let pixel_speeds = self.sight.as_ref().map(|sight| sight.pixel_speeds.clone());
         let by_garment = self.by_garment.clone();
-        let pixel_speeds = pixel_speeds.unwrap_or_default();
+        let pixel_speeds = self.pixel_speeds.clone();
         let restraint = Arc::new(ByGarment { of_vertex, by_garment, pixel_speeds });
         RestingPolicy { restraint, bleeding: self.bleeding }
     }
+}
+
+/// The cameras that thresholds of rest depend on; `None` if none does.
+pub(super) fn eyes(scene: &Scene, restraints: Option<&Restraints>) -> Option<Eyes> {
+    let of_fluid = scene.fluid.as_ref().and_then(|fluid| fluid.policy.as_ref());
+    let looks = restraints.is_some_and(Restraints::looks)
+        || of_fluid.is_some_and(|policy| matches!(policy, Policy::View(_)));
+    let view = scene.view.clone().unwrap_or_default();
+    looks.then(|| Some(Eyes::new(scene, &view)?.ahead(FRAMES_OF_MOTION))).flatten()
 }
 
 /// What is measured at the end of the steps of a frame.
@@ -91,15 +85,22 @@ impl World {
     /// took (s).
     pub(crate) fn look_who_may_rest(&mut self) -> f64 {
         let time = self.time();
-        let Some(restraints) = self.restraints.as_mut().filter(|all| all.sight.is_some()) else {
-            return 0.0;
-        };
+        let Some(eyes) = &self.eyes else { return 0.0 };
         let clock = Instant::now();
-        if restraints.look(&self.cloth, time, &self.obstacles)
+        let samples = eyes.samples(&self.cloth, time, &self.obstacles);
+        let speeds = |x: &[World3]| {
+            let speeds = pixel_speeds(x, &samples, eyes.frame_s(), eyes.settings());
+            speeds.expect("a window has its camera, and the scene's settings have been checked")
+        };
+        if let Some(restraints) = self.restraints.as_mut().filter(|all| all.looks())
+            && restraints.look(speeds(&self.cloth.x))
             && let Some(prepared) = &mut self.prepared
         {
             let policy = restraints.policy(&self.cloth, &self.garments);
             prepared.system.change_restraint(policy, &mut self.cloth, time);
+        }
+        if let Some(water) = &mut self.fluid {
+            water.look(speeds);
         }
         clock.elapsed().as_secs_f64()
     }

@@ -10,7 +10,11 @@ impl World {
         if !self.has_cloth() {
             skipped.push("cloth: none in the scene".to_string());
             let is_free = self.fluid.as_ref().is_some_and(|water| !water.is_restrained);
-            skipped.extend(is_free.then(|| "restraint: none in the scene".to_string()));
+            if is_free {
+                skipped.push("restraint: none in the scene".to_string());
+            } else if self.eyes.is_none() {
+                skipped.push("view: who rests does not depend on a camera".to_string());
+            }
             return skipped;
         }
         let mut note = |absent: bool, text: &str| {

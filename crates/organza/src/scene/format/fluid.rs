@@ -87,6 +87,10 @@ pub struct Block {
     /// where they are.
     #[serde(default)]
     pub seed: u32,
+    /// Brings its layers as close as their weight presses them in fluid that stands still, so that sound does
+    /// not go up and down in it from the start on.
+    #[serde(default)]
+    pub pressed: bool,
 }
 
 /// A rectangular nozzle that lets layers of particles out.
@@ -147,8 +151,10 @@ pub enum Face {
 
 /// How particles are restrained. `policy` says by what: by `speed`, between
 /// `restrain_below_m_per_s` and `restore_above_m_per_s`; by the `kinetic` energy of a particle, between
-/// `restrain_below_j` and `restore_above_j`; or `automatic`, so that a particle is off by no more than
-/// `error_m` over `duration_s`.
+/// `restrain_below_j` and `restore_above_j`; `automatic`, so that a particle is off by no more than
+/// `error_m` over `duration_s`; by what the cameras see (`view`), between `restrain_below_px_per_frame` and
+/// `restore_above_px_per_frame`; or `automatic-view`, so that a particle that shows is off by no more than
+/// `error_px` over `duration_s`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FluidRestraint {
@@ -170,7 +176,20 @@ pub struct FluidRestraint {
     /// Error of position that is accepted (m).
     #[serde(default)]
     pub error_m: Option<f64>,
-    /// Time over which it is (s).
+    /// Particles that move by less than this in the picture rest (pixels per frame).
+    #[serde(default)]
+    pub restrain_below_px_per_frame: Option<f64>,
+    /// Particles that move by more than this in the picture move freely (pixels per frame).
+    #[serde(default)]
+    pub restore_above_px_per_frame: Option<f64>,
+    /// By view: speed up to which a particle rests at most, however far it is from the picture (m/s); absent
+    /// means 0.1.
+    #[serde(default)]
+    pub most_m_per_s: Option<f64>,
+    /// Error in the picture that is accepted (pixels).
+    #[serde(default)]
+    pub error_px: Option<f64>,
+    /// Time over which an error is accepted (s); absent means all of the scene.
     #[serde(default)]
     pub duration_s: Option<f64>,
     /// How particles pass from rest to full dynamics.
@@ -187,7 +206,8 @@ pub struct FluidRestraint {
     /// of the pressure under a layer of particles.
     #[serde(default)]
     pub pressure_tolerance_pa: Option<f64>,
-    /// Everything is computed anew where more than this part of the particles moves (1).
+    /// Everything is computed anew where more than this part of the particles moves (1), or fewer that are
+    /// next to nearly all others; 1 for never.
     #[serde(default = "sweep_above")]
     pub sweep_above: f64,
 }
@@ -203,6 +223,11 @@ pub enum RestraintPolicy {
     Kinetic,
     /// By their speed, with thresholds from the error that is accepted.
     Automatic,
+    /// By their motion in the picture. What is out of it, or hidden, rests sooner, and is awake before it
+    /// comes into it.
+    View,
+    /// The same, with thresholds from the error that is accepted.
+    AutomaticView,
 }
 
 /// How particles pass from rest to full dynamics. With all but the splines the restrained kinetic

@@ -155,6 +155,10 @@ pub(crate) const BLEEDING_S: f64 = 0.5;
 /// See [`Thresholds::View`], where the scene does not say (m/s).
 pub(crate) const MOST_M_PER_S: f64 = 0.5;
 
+/// See [`FluidRestraint::most_m_per_s`], where the scene does not say (m/s). It is less than for cloth:
+/// bleeding makes of it a friction, and water must not stand in heaps.
+pub(crate) const FLUID_MOST_M_PER_S: f64 = 0.1;
+
 /// Values of keys that a scene leaves out.
 mod default {
     pub(super) fn frames_per_second() -> f64 {

@@ -12,20 +12,20 @@ use super::super::limits::{
 };
 use super::super::typed::suggestion;
 use super::handle::check_times;
+use super::restraint::Run;
 use super::{beyond, names};
-use crate::fluid::{policy, settings};
+use crate::fluid::{Policy, policy, settings};
 use nalgebra::Vector3;
 
 /// Numbers of particles in a recording.
 const MAX_NAMES: f64 = u32::MAX as f64;
 
-/// Checks the fluids of a scene, which runs for `duration` (s) under `gravity` (m/s²). For now there
-/// is at most one.
+/// Checks the fluids of a scene that is `run` under `gravity` (m/s²). For now there is at most one.
 pub(super) fn resolve(
     fluids: Vec<FluidFile>,
     (cloths, obstacles): (Option<&[Cloth]>, Option<&[Obstacle]>),
     gravity: [f64; 3],
-    duration: f64,
+    run: Run,
     at: &At<'_>,
 ) -> Option<Option<Fluid>> {
     if fluids.len() > 1 {
@@ -35,17 +35,21 @@ pub(super) fn resolve(
     let Some((file, name)) = fluids.into_iter().zip(names).next() else { return Some(None) };
     let at = at.index(0);
     check_numbers(&file, &at);
-    check_places(&file, duration, &at);
-    if let Some(restraint) = &file.restraint {
-        check_restraint(restraint, &at.key("restraint"));
-    }
+    check_places(&file, run.duration, &at);
+    let restraint = file.restraint.as_ref();
+    let policy = restraint.map(|wish| check_restraint(wish, run, &at.key("restraint")));
     let obstacles =
         obstacles.map(|all| all.iter().map(|obstacle| obstacle.name.as_str()).collect());
     let obstacles = find(file.obstacles.as_deref(), obstacles, "obstacle", &at.key("obstacles"));
     let cloths = cloths.map(|all| all.iter().map(|cloth| cloth.name.as_str()).collect());
     let cloths = find(file.cloths.as_deref(), cloths, "cloth", &at.key("cloths"));
-    let fluid = Fluid { name, obstacles: obstacles?, cloths: cloths?, gravity, file };
-    check_sound(&fluid, duration, &at);
+    let (obstacles, cloths) = (obstacles?, cloths?);
+    let policy = match policy {
+        Some(policy) => Some(policy?),
+        None => None,
+    };
+    let fluid = Fluid { name, obstacles, cloths, gravity, policy, file };
+    check_sound(&fluid, run.duration, &at);
     Some(Some(fluid))
 }
 
@@ -166,34 +170,57 @@ fn check_sound(fluid: &Fluid, duration: f64, at: &At<'_>) {
     }
 }
 
-fn check_restraint(restraint: &FluidRestraint, at: &At<'_>) {
+/// The policy of a fluid's restraint; none if its thresholds were complained of.
+fn check_restraint(restraint: &FluidRestraint, run: Run, at: &At<'_>) -> Option<Policy> {
+    use RestraintPolicy::{Automatic, AutomaticView, Kinetic, Speed, View};
     let FluidRestraint { policy: by, law, .. } = *restraint;
-    let given = [
-        ("restrain_below_m_per_s", restraint.restrain_below_m_per_s, RestraintPolicy::Speed),
-        ("restore_above_m_per_s", restraint.restore_above_m_per_s, RestraintPolicy::Speed),
-        ("restrain_below_j", restraint.restrain_below_j, RestraintPolicy::Kinetic),
-        ("restore_above_j", restraint.restore_above_j, RestraintPolicy::Kinetic),
-        ("error_m", restraint.error_m, RestraintPolicy::Automatic),
-        ("duration_s", restraint.duration_s, RestraintPolicy::Automatic),
+    // Keys, the policies that they belong to, and whether these need them.
+    let given: [(&str, Option<f64>, &[RestraintPolicy], bool); 10] = [
+        ("restrain_below_m_per_s", restraint.restrain_below_m_per_s, &[Speed], true),
+        ("restore_above_m_per_s", restraint.restore_above_m_per_s, &[Speed], true),
+        ("restrain_below_j", restraint.restrain_below_j, &[Kinetic], true),
+        ("restore_above_j", restraint.restore_above_j, &[Kinetic], true),
+        ("restrain_below_px_per_frame", restraint.restrain_below_px_per_frame, &[View], true),
+        ("restore_above_px_per_frame", restraint.restore_above_px_per_frame, &[View], true),
+        ("most_m_per_s", restraint.most_m_per_s, &[View, AutomaticView], false),
+        ("error_m", restraint.error_m, &[Automatic], true),
+        ("error_px", restraint.error_px, &[AutomaticView], true),
+        ("duration_s", restraint.duration_s, &[Automatic, AutomaticView], false),
     ];
     let mut complete = true;
-    for (key, value, of) in given {
+    for (key, value, of, is_needed) in given {
         match value {
-            Some(value) if of == by => at.key(key).not_negative(value, MAX_FACTOR, ""),
+            Some(value) if of.contains(&by) => at.key(key).not_negative(value, MAX_FACTOR, ""),
             Some(_) => at.key(key).complain("belongs to another `policy`"),
-            None if of == by => {
+            None if is_needed && of.contains(&by) => {
                 complete = false;
                 at.complain(format!("key `{key}` is missing"));
             }
             None => {}
         }
     }
-    if by == RestraintPolicy::Automatic && law != RestraintLaw::Ramp {
-        at.key("law").complain("the policy `automatic` has the law `ramp`");
+    let (name, is_by_view) = match by {
+        Speed => ("speed", false),
+        Kinetic => ("kinetic", false),
+        Automatic => ("automatic", false),
+        View => ("view", true),
+        AutomaticView => ("automatic-view", true),
+    };
+    if matches!(by, Automatic | AutomaticView) && law != RestraintLaw::Ramp {
+        at.key("law").complain(format!("the policy `{name}` has the law `ramp`"));
     }
-    if complete && let Err(error) = policy::of(restraint) {
-        at.complain(error.to_string());
+    if is_by_view && !run.has_camera {
+        at.key("policy").complain("the scene has no `camera` to look through");
     }
+    check_habits(restraint, at);
+    let frame_s = run.duration / f64::from(run.frames);
+    let run = policy::Run { duration: run.duration, frame_s };
+    let made = complete.then(|| policy::of(restraint, run))?;
+    made.inspect_err(|error| at.complain(error.to_string())).ok()
+}
+
+/// Checks what a restraint has beside its thresholds.
+fn check_habits(restraint: &FluidRestraint, at: &At<'_>) {
     if let Some(tau) = restraint.bleeding_s {
         at.key("bleeding_s").positive(tau, MAX_TIME_S, "s");
     }

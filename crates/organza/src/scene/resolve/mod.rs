@@ -108,7 +108,7 @@ pub(super) fn resolve(
     }
     let fluids = top.key("fluids");
     let bounded = (cloths.as_deref(), obstacles.as_deref());
-    let fluid = fluid::resolve(file.fluids, bounded, file.gravity, duration, &fluids);
+    let fluid = fluid::resolve(file.fluids, bounded, file.gravity, run, &fluids);
     let up = super::data::up(file.gravity);
     let facts = view::Facts { up, frames_per_second: file.frames_per_second, frames: file.frames };
     let camera_path = view::path(file.camera.as_ref(), &file.shots, &facts, &top, context);
