@@ -72,8 +72,8 @@ const EXACT_AGAIN: f64 = 0.1;
 /// Stages that start at rest unasked after one that did so by choice.
 const REST_STARTS: u32 = 7;
 /// Iterations are allowed up to this multiple of the limit while triangles are out of their strain
-/// limits.
-const LIMIT_PATIENCE: usize = 3;
+/// limits, or cloth has come through what it touches.
+const PATIENCE: usize = 3;
 /// How often contacts are looked for that came up during the iterations.
 const MAX_LOOKS: usize = 2;
 
@@ -202,9 +202,9 @@ pub(crate) fn minimise(
             budget = budget.max(newton.report.iterations + 1);
             continue;
         }
-        let in_bounds = newton.respect_limits();
-        let patience = newton.report.iterations < LIMIT_PATIENCE * settings.max_iterations;
-        if in_bounds || newton.converged || newton.stuck || !patience {
+        let may_end = newton.respect_limits() && !newton.passes();
+        let patience = newton.report.iterations < PATIENCE * settings.max_iterations;
+        if may_end || newton.converged || newton.stuck || !patience {
             break;
         }
         budget = newton.report.iterations + 1;
@@ -390,6 +390,12 @@ impl Newton<'_> {
         self.system.limits = Some(limits);
         self.report.energy_s += clock.elapsed().as_secs_f64();
         in_bounds
+    }
+
+    /// Whether it has come through a contact: its way would have to be changed, which leaves gaps that
+    /// are smaller with every step, and in the end none.
+    fn passes(&self) -> bool {
+        self.system.contact.as_ref().is_some_and(|contact| contact.is_passed(&self.x))
     }
 
     /// Gives energies to contacts that came up on the way; true if there are any.
