@@ -132,6 +132,8 @@ struct Newton<'a> {
     is_near: bool,
     /// No descent is left within rounding.
     stuck: bool,
+    /// Vertices whose way contact has changed.
+    bent: Vec<u32>,
     /// Where the last direction of a restrained stage led to, in full.
     model: Option<Model>,
 }
@@ -151,6 +153,8 @@ pub(crate) struct Minimum {
     /// Under restraint, the momenta (kg m/s) that go with the forces of the last iteration, linear in
     /// the displacements, if its step was the last one and made in full.
     pub p: Option<Vec<World3>>,
+    /// Vertices whose way something was in.
+    pub bent: Vec<u32>,
     pub report: SolveReport,
 }
 
@@ -182,6 +186,7 @@ pub(crate) fn minimise(
         converged: false,
         is_near: false,
         stuck: false,
+        bent: Vec::new(),
         model: None,
         system,
         solver,
@@ -211,9 +216,9 @@ pub(crate) fn minimise(
     }
     newton.report.unconverged = usize::from(!newton.converged);
     newton.secure()?;
-    let Newton { x, model, report, .. } = newton;
+    let Newton { x, model, bent, report, .. } = newton;
     let p = model.filter(|model| model.x == x).map(|model| model.p);
-    Ok(Minimum { x, p, report })
+    Ok(Minimum { x, p, bent, report })
 }
 
 /// The start and its potential.
@@ -419,7 +424,12 @@ impl Newton<'_> {
         let Some(contact) = &mut self.system.contact else { return Ok(()) };
         let clock = Instant::now();
         let caught = |Blocked { place }| SolveError::Caught { time: self.inertia.time, place };
+        self.trial.clone_from(&self.x);
         self.report.shortened = contact.secure(&mut self.x, self.inertia.fixed).map_err(caught)?;
+        if self.report.shortened > 0 {
+            let is_bent = |&i: &u32| self.trial[i as usize] != self.x[i as usize];
+            self.bent = (0..self.x.len() as u32).filter(is_bent).collect();
+        }
         self.report.touches = contact.n_touches();
         let is_bent = self.report.shortened > 0 && !self.system.accepts_rise;
         let potential = |x: &[World3]| self.inertia.potential(self.system, x);

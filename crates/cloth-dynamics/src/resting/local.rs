@@ -134,7 +134,7 @@ impl Local {
                 fine: whole.fine,
             }),
         };
-        let Minimum { x, p, mut report } =
+        let Minimum { x, p, mut report, .. } =
             minimise(system, solver, &inertia, &self.starts, settings)?;
         let is_solved = p.is_some();
         let gradient = match p {

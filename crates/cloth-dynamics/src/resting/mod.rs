@@ -218,7 +218,7 @@ impl Resting {
             let mut v = velocity.to_vec();
             self.settle(&mut v, &cloth.m, time);
             let report = SolveReport { stages: 1, rest, ..SolveReport::default() };
-            return Ok(StageEnd { x: x_t0.to_vec(), v, report });
+            return Ok(StageEnd { x: x_t0.to_vec(), v, bent: Vec::new(), report });
         }
         if self.touching.is_empty() && system.contact.is_some() {
             self.touching = vec![World3::zeros(); n];
@@ -262,7 +262,7 @@ impl Resting {
         self.was_fixed.clone_from(&fixed);
         self.last.clone_from(&start.constraints);
         report.rest.add(&rest);
-        Ok(StageEnd { x, v, report })
+        Ok(StageEnd { x, v, bent: Vec::new(), report })
     }
 
     /// Sleepers that wake in the stage.

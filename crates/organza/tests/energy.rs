@@ -1,0 +1,44 @@
+//! Energy of steps that are far too long for what they do: cloth that falls on things gains none.
+
+use organza::scene::{LoadOptions, from_sources, parse};
+use organza::world::World;
+
+/// A sheet that falls on a ball and then on a table, in steps as long as frames.
+fn drape(frames_per_second: u32, integrator: &str) -> World {
+    let text = format!(
+        "{{ frames: 20, frames_per_second: {frames_per_second}, substeps: 1,
+            integrator: '{integrator}',
+            cloths: [{{ mesh: {{ grid: {{ size_m: [0.8, 0.8], cells: [16, 16] }} }},
+                fabric: 'woven-light', transform: {{ translate: [-0.4, -0.37, 0.21] }} }}],
+            obstacles: [
+                {{ mesh: {{ sphere: {{ radius_m: 0.2, detail: 3 }} }} }},
+                {{ mesh: {{ plane: {{ size_m: [3, 3] }} }},
+                   transform: {{ translate: [0, 0, -0.22] }} }},
+            ],
+            contact: {{}} }}"
+    );
+    World::new(&parse(&text, "s", &LoadOptions::default(), &from_sources(&[])).unwrap()).unwrap()
+}
+
+#[test]
+fn cloth_that_falls_on_things_gains_no_energy() {
+    for (per_second, frames) in [(25, 20), (10, 12)] {
+        for integrator in ["sdirk2", "implicit-euler"] {
+            let mut world = drape(per_second, integrator);
+            let (mut energies, mut n_bent) = (Vec::new(), 0);
+            for _ in 0..frames {
+                let report = world.advance().unwrap();
+                energies.push(report.kinetic_energy_j + report.potential_energy_j.unwrap());
+                n_bent += report.shortened_ways;
+            }
+            println!("1/{per_second} s, {integrator}: {n_bent} bent, {energies:.5?} J");
+            assert!(n_bent > 0);
+            for pair in energies.windows(2) {
+                assert!(
+                    pair[1] <= pair[0] * (1.0 + 1e-9),
+                    "1/{per_second} s, {integrator}: {energies:?}"
+                );
+            }
+        }
+    }
+}
