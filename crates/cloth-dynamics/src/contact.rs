@@ -57,6 +57,10 @@ pub trait Contact: Send + Sync {
     /// it one; true if there was something.
     fn look(&mut self, x: &[World3]) -> bool;
 
+    /// Whether a contact that has an energy is passed at the end `x` of the stage (m): the way to there
+    /// would have to be changed.
+    fn is_passed(&self, x: &[World3]) -> bool;
+
     /// Shortens the way from the start of the stage to `x` (m) until it is certainly free, without
     /// moving the vertices that are `fixed`; returns how many vertices it moved.
     ///

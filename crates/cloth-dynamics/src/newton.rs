@@ -74,8 +74,8 @@ const EXACT_AGAIN: f64 = 0.1;
 /// Stages that start at rest unasked after one that did so by choice.
 const REST_STARTS: u32 = 7;
 /// Iterations are allowed up to this multiple of the limit while triangles are out of their strain
-/// limits.
-const LIMIT_PATIENCE: usize = 3;
+/// limits, or cloth has come through what it touches.
+const PATIENCE: usize = 3;
 /// How often contacts are looked for that came up during the iterations.
 const MAX_LOOKS: usize = 2;
 
@@ -134,6 +134,8 @@ struct Newton<'a> {
     is_near: bool,
     /// No descent is left within rounding.
     stuck: bool,
+    /// Vertices whose way contact has changed.
+    bent: Vec<u32>,
     /// Where the last direction of a restrained stage led to, in full.
     model: Option<Model>,
 }
@@ -153,6 +155,8 @@ pub(crate) struct Minimum {
     /// Under restraint, the momenta (kg m/s) that go with the forces of the last iteration, linear in
     /// the displacements, if its step was the last one and made in full.
     pub p: Option<Vec<World3>>,
+    /// Vertices whose way something was in.
+    pub bent: Vec<u32>,
     pub report: SolveReport,
 }
 
@@ -184,6 +188,7 @@ pub(crate) fn minimise(
         converged: false,
         is_near: false,
         stuck: false,
+        bent: Vec::new(),
         model: None,
         system,
         solver,
@@ -204,18 +209,18 @@ pub(crate) fn minimise(
             budget = budget.max(newton.report.iterations + 1);
             continue;
         }
-        let in_bounds = newton.respect_limits();
-        let patience = newton.report.iterations < LIMIT_PATIENCE * settings.max_iterations;
-        if in_bounds || newton.converged || newton.stuck || !patience {
+        let may_end = newton.respect_limits() && !newton.passes();
+        let patience = newton.report.iterations < PATIENCE * settings.max_iterations;
+        if may_end || newton.converged || newton.stuck || !patience {
             break;
         }
         budget = newton.report.iterations + 1;
     }
     newton.report.unconverged = usize::from(!newton.converged);
     newton.secure()?;
-    let Newton { x, model, report, .. } = newton;
+    let Newton { x, model, bent, report, .. } = newton;
     let p = model.filter(|model| model.x == x).map(|model| model.p);
-    Ok(Minimum { x, p, report })
+    Ok(Minimum { x, p, bent, report })
 }
 
 /// The start and its potential.
@@ -394,6 +399,12 @@ impl Newton<'_> {
         in_bounds
     }
 
+    /// Whether it has come through a contact: its way would have to be changed, which leaves gaps that
+    /// are smaller with every step, and in the end none.
+    fn passes(&self) -> bool {
+        self.system.contact.as_ref().is_some_and(|contact| contact.is_passed(&self.x))
+    }
+
     /// Gives energies to contacts that came up on the way; true if there are any.
     fn look_for_contacts(&mut self) -> Result<bool, SolveError> {
         let Some(contact) = &mut self.system.contact else { return Ok(false) };
@@ -415,7 +426,12 @@ impl Newton<'_> {
         let Some(contact) = &mut self.system.contact else { return Ok(()) };
         let clock = Instant::now();
         let caught = |Blocked { place }| SolveError::Caught { time: self.inertia.time, place };
+        self.trial.clone_from(&self.x);
         self.report.shortened = contact.secure(&mut self.x, self.inertia.pinned).map_err(caught)?;
+        if self.report.shortened > 0 {
+            let is_bent = |&i: &u32| self.trial[i as usize] != self.x[i as usize];
+            self.bent = (0..self.x.len() as u32).filter(is_bent).collect();
+        }
         self.report.touches = contact.n_touches();
         let is_bent = self.report.shortened > 0 && !self.system.accepts_rise;
         let potential = |x: &[World3]| self.inertia.potential(self.system, x);

@@ -89,6 +89,10 @@ impl Contact for PlaneContact {
         false
     }
 
+    fn is_passed(&self, x: &[World3]) -> bool {
+        x.iter().any(|x| self.gap(x) <= 0.0)
+    }
+
     fn secure(&mut self, x: &mut [World3], fixed: &[bool]) -> Result<usize, Blocked> {
         let mut n = 0;
         for ((x, least), fixed) in x.iter_mut().zip(&self.least).zip(fixed) {

@@ -55,6 +55,8 @@ pub struct System {
     pub(crate) rests: u32,
     /// Whether impacts may leave more energy than there would be at rest.
     pub(crate) accepts_rise: bool,
+    /// Whether the air does work.
+    is_windy: bool,
     /// Brings back what a step leaves out of its strain limits, if there are any.
     pub(crate) limits: Option<StrainProjection>,
     /// Who rests, if anybody may.
@@ -109,7 +111,8 @@ impl System {
             forces.push(Box::new(damping));
         }
 
-        System::of(mesh.n_vertices(), forces, limits)
+        let system = System::of(mesh.n_vertices(), forces, limits)?;
+        Ok(System { is_windy: environment.wind.is_some(), ..system })
     }
 
     fn of(
@@ -132,6 +135,7 @@ impl System {
             matrix,
             rests: 0,
             accepts_rise: true,
+            is_windy: false,
             limits,
             contact: None,
             resting: None,
@@ -233,6 +237,22 @@ impl System {
     /// [`SolveError::Rise`](crate::SolveError::Rise): a shorter step does better.
     pub fn accept_rise(&mut self, accepted: bool) {
         self.accepts_rise = accepted;
+    }
+
+    /// Whether something else than these potentials does work between two times (s), the first of which
+    /// has the cloth at `x` (m): wind, or things that move.
+    pub(crate) fn is_driven(
+        &self,
+        x: &[World3],
+        constraints: &dyn Fn(f64) -> Constraints,
+        times: [f64; 2],
+    ) -> bool {
+        let [from, to] = times.map(constraints);
+        let is_pulled = to.fixed.iter().any(|&(i, place)| x[i as usize] != place);
+        let is_pushed = || self.contact.as_ref().is_some_and(|contact| !contact.is_still(times));
+        // Velocities that are momenta tell no energy.
+        let conserves = self.resting.as_ref().is_some_and(|resting| resting.conserves());
+        self.is_windy || conserves || is_pulled || from != to || is_pushed()
     }
 
     /// Takes the contact back, with what it remembers.

@@ -44,6 +44,9 @@ impl Mannequin {
     pub const MIN_CELL: f64 = 0.008;
     /// Greatest length of edges (m): longer ones would lose hands and feet.
     pub const MAX_CELL: f64 = 0.04;
+    /// Parts of the skin that face each other stay farther apart than this, whatever it does (m):
+    /// enough for two layers of cloth 6 mm thick and the distance that contact keeps.
+    pub const ROOM: f64 = 0.02;
 
     /// A mannequin with edges of about `cell` (m) that moves so.
     ///

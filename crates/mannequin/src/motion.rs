@@ -179,7 +179,7 @@ fn walk(angles: &mut Angles, c: f64, wide: f64, turns: f64) -> Isometry3<f64> {
         // The knee bends while the leg swings to the front.
         let bent = 0.12 + 0.55 * (0.5 + 0.5 * c.cos()).powi(2);
         angles.leg(side, swing * c.sin() + 0.04, 0.0, bent);
-        angles.arm(side, 1.08, 0.9 * swing * c.sin(), 0.35);
+        angles.arm(side, 1.0, 0.9 * swing * c.sin(), 0.35);
     }
     angles.turn(Joint::Pelvis, [0.03, 0.04 * c.cos(), -0.10 * c.sin()]);
     angles.turn(Joint::Spine, [0.0, -0.04 * c.cos(), 0.10 * c.sin()]);

@@ -38,6 +38,10 @@ pub(crate) struct Bone {
 }
 
 /// All joints, parents before their children, in the order of [`Joint`].
+///
+/// Shoulders and hips are not in the middle of their limbs, but near the skin of armpit and groin: a
+/// fold that closes around a joint keeps the length of its skin only there. Farther off, linear blends
+/// would pinch it shut, and cloth in it.
 pub(crate) const BONES: [Bone; N_JOINTS] = {
     use Joint::*;
     const UP: [f64; 3] = [0.0, 0.0, 1.0];
@@ -58,12 +62,12 @@ pub(crate) const BONES: [Bone; N_JOINTS] = {
         bone(Spine, Some(Pelvis), [0.0, 0.0, 1.09], UP, 0.07),
         bone(Chest, Some(Spine), [0.0, 0.0, 1.22], UP, 0.07),
         bone(Head, Some(Chest), [0.0, 0.0, 1.53], UP, 0.035),
-        bone(LeftShoulder, Some(Chest), [0.16, 0.0, 1.41], LEFT, 0.05),
-        bone(RightShoulder, Some(Chest), [-0.16, 0.0, 1.41], RIGHT, 0.05),
+        bone(LeftShoulder, Some(Chest), [0.167, 0.0, 1.382], LEFT, 0.05),
+        bone(RightShoulder, Some(Chest), [-0.167, 0.0, 1.382], RIGHT, 0.05),
         bone(LeftElbow, Some(LeftShoulder), [0.43, 0.0, 1.41], LEFT, 0.05),
         bone(RightElbow, Some(RightShoulder), [-0.43, 0.0, 1.41], RIGHT, 0.05),
-        bone(LeftHip, Some(Pelvis), [0.095, 0.0, 0.89], DOWN, 0.10),
-        bone(RightHip, Some(Pelvis), [-0.095, 0.0, 0.89], DOWN, 0.10),
+        bone(LeftHip, Some(Pelvis), [0.095, -0.04, 0.89], DOWN, 0.10),
+        bone(RightHip, Some(Pelvis), [-0.095, -0.04, 0.89], DOWN, 0.10),
         bone(LeftKnee, Some(LeftHip), [0.112, 0.0, 0.50], DOWN, 0.07),
         bone(RightKnee, Some(RightHip), [-0.112, 0.0, 0.50], DOWN, 0.07),
         bone(LeftAnkle, Some(LeftKnee), [0.122, 0.0, 0.09], DOWN, 0.045),

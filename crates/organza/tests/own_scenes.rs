@@ -172,3 +172,17 @@ fn groups_have_as_many_as_wanted() {
     let world = after(&own_coarse("crowd.json5", &cloths, &["crowd.count=3"]), 2);
     assert_eq!(world.garments.len(), 3);
 }
+
+#[test]
+fn dancers_begin_to_dance_without_being_caught() {
+    // Solved by a few iterations, which is where contacts used to be passed.
+    let loaded = own_coarse("dancers.json5", &["crowd.cloths[0]"], &["crowd.count=4"]);
+    let mut world = World::new(&loaded).unwrap();
+    let mut n_bent = 0;
+    for frame in 1..=24 {
+        let report = world.advance().unwrap();
+        assert_eq!((report.yielded, report.crossings), (0, Some(0)), "{frame}");
+        n_bent += report.shortened_ways;
+    }
+    assert!(n_bent < 100, "{n_bent}");
+}

@@ -1,5 +1,6 @@
 //! Implicit Euler: first order, strongly damped.
 
+use super::rise::{StepEnd, take_back};
 use super::{StageEnd, StageStart, Step, TimeIntegrator, solve_stage};
 use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
 use crate::solver::LinearSolver;
@@ -21,7 +22,8 @@ impl TimeIntegrator for ImplicitEuler {
         Step { time, h }: Step,
     ) -> Result<SolveReport, SolveError> {
         let (time_t0, time) = (time, time + h);
-        if let Some(report) = system.sleeps(constraints, Step { time: time_t0, h }, &[time]) {
+        let step = Step { time: time_t0, h };
+        if let Some(report) = system.sleeps(constraints, step, &[time]) {
             return Ok(report);
         }
         system.settle(cloth, time_t0);
@@ -34,10 +36,12 @@ impl TimeIntegrator for ImplicitEuler {
             time,
             constraints: constraints(time),
         };
-        let StageEnd { x, v, report } = solve_stage(cloth, system, solver, settings, &start)?;
+        let StageEnd { x, mut v, bent, report } =
+            solve_stage(cloth, system, solver, settings, &start)?;
+        take_back(system, cloth, StepEnd { x: &x, v: &mut v, bent: &bent }, constraints, step)?;
         cloth.x = x;
         let before = std::mem::replace(&mut cloth.v, v);
-        system.put_to_rest(cloth, &before, Step { time: time_t0, h });
+        system.put_to_rest(cloth, &before, step);
         Ok(report)
     }
 }

@@ -1,6 +1,7 @@
 //! Time integrators: implicit Euler, and a second-order one that damps the stiff end as strongly.
 
 mod implicit_euler;
+mod rise;
 mod sdirk2;
 
 pub use implicit_euler::ImplicitEuler;
@@ -63,6 +64,8 @@ pub(crate) struct StageEnd {
     pub(crate) x: Vec<World3>,
     /// Velocities (m/s); of restrained vertices, momentum over mass.
     pub(crate) v: Vec<World3>,
+    /// Vertices whose way something was in.
+    pub(crate) bent: Vec<u32>,
     pub(crate) report: SolveReport,
 }
 
@@ -122,8 +125,9 @@ pub(crate) fn plain_stage(
         pinned: &fixed,
         restrained: None,
     };
-    let Minimum { x, mut report, .. } = minimise(system, solver, &inertia, &starts, settings)?;
+    let Minimum { x, bent, mut report, .. } =
+        minimise(system, solver, &inertia, &starts, settings)?;
     report.contact_s += contact_s;
     let v = x.iter().zip(base).map(|(x, base)| (x - base) / h).collect();
-    Ok(StageEnd { x, v, report })
+    Ok(StageEnd { x, v, bent, report })
 }

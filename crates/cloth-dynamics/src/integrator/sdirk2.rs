@@ -11,6 +11,7 @@
 //! forces of the old state, which remeshing or a new contact may just have thrown off balance, and
 //! unlike BDF2 it carries no history across them.
 
+use super::rise::{StepEnd, take_back};
 use super::{StageEnd, StageStart, Step, TimeIntegrator, solve_stage};
 use crate::solve_report::{NewtonSettings, SolveError, SolveReport};
 use crate::solver::LinearSolver;
@@ -48,7 +49,7 @@ impl TimeIntegrator for Sdirk2 {
             time: time + h_stage,
             constraints: constraints(time + h_stage),
         };
-        let StageEnd { x: x_1, v: v_1, mut report } =
+        let StageEnd { x: x_1, v: v_1, mut bent, mut report } =
             solve_stage(cloth, system, solver, settings, &start)?;
 
         let moved = cloth.x.iter().zip(&x_1);
@@ -70,7 +71,7 @@ impl TimeIntegrator for Sdirk2 {
             time: time + h,
             constraints: held,
         };
-        let StageEnd { x: x_2, v: mut v_2, report: second } =
+        let StageEnd { x: x_2, v: mut v_2, bent: more, report: second } =
             solve_stage(cloth, system, solver, settings, &start)?;
         report.add(&second);
 
@@ -78,6 +79,11 @@ impl TimeIntegrator for Sdirk2 {
             // The stages do not apply to a prescribed path: its mean velocity does.
             v_2[i] = (x_2[i] - cloth.x[i]) / h;
         }
+        bent.extend(more);
+        bent.sort_unstable();
+        bent.dedup();
+        let end = StepEnd { x: &x_2, v: &mut v_2, bent: &bent };
+        take_back(system, cloth, end, constraints, Step { time, h })?;
         cloth.x = x_2;
         let before = std::mem::replace(&mut cloth.v, v_2);
         system.put_to_rest(cloth, &before, Step { time, h });

@@ -19,6 +19,8 @@ pub(super) struct Try {
     pub(super) gradient: Vec<World3>,
     /// It goes with the displacements as the convex problem of the stage wants it.
     pub(super) is_solved: bool,
+    /// Vertices whose way impacts bent.
+    pub(super) bent: Vec<u32>,
     pub(super) report: SolveReport,
     pub(super) pushed: Vec<u32>,
 }
@@ -79,6 +81,8 @@ pub(super) struct Solved {
     pub(super) x: Vec<World3>,
     pub(super) gradient: Vec<World3>,
     pub(super) is_solved: bool,
+    /// Vertices of the whole whose way impacts bent.
+    pub(super) bent: Vec<u32>,
     pub(super) report: SolveReport,
 }
 
@@ -151,7 +155,7 @@ impl Local {
             pinned: &self.pinned,
             restrained: whole.stands.is_none().then(restrained),
         };
-        let Minimum { x, p, mut report } =
+        let Minimum { x, p, bent, mut report } =
             minimise(system, solver, &inertia, &self.starts, settings)?;
         let is_solved = p.is_some();
         if whole.stands.is_some() {
@@ -170,7 +174,8 @@ impl Local {
                 gradient
             }
         };
-        Ok(Solved { x, gradient, is_solved, report })
+        let bent = bent.into_iter().map(|k| self.ids[k as usize]).collect();
+        Ok(Solved { x, gradient, is_solved, bent, report })
     }
 }
 
@@ -193,7 +198,8 @@ pub(super) fn scattered(
         x[i as usize] = solved.x[k];
         gradient[i as usize] = solved.gradient[k];
     }
-    Try { x, gradient, is_solved: solved.is_solved, report: solved.report, pushed }
+    let Solved { is_solved, bent, report, .. } = solved;
+    Try { x, gradient, is_solved, bent, report, pushed }
 }
 
 /// Refuses laws of which an implicit stage cannot find the minimum.

@@ -152,6 +152,11 @@ impl Resting {
         }
     }
 
+    /// Whether velocities are momenta over mass that a law conserves.
+    pub(crate) fn conserves(&self) -> bool {
+        self.policy.bleeding.is_none()
+    }
+
     /// Whether nothing happens in a step: all sleep, and nothing wakes them.
     pub(crate) fn sleeps(
         &mut self,
@@ -232,7 +237,7 @@ impl Resting {
             let mut v = velocity.to_vec();
             self.settle(&mut v, &cloth.m, time);
             let report = SolveReport { stages: 1, rest, ..SolveReport::default() };
-            return Ok(StageEnd { x: x_t0.to_vec(), v, report });
+            return Ok(StageEnd { x: x_t0.to_vec(), v, bent: Vec::new(), report });
         }
         if self.touching.is_empty() && system.contact.is_some() {
             self.touching = vec![World3::zeros(); n];
@@ -248,6 +253,7 @@ impl Resting {
                     x: from.clone(),
                     gradient: vec![World3::zeros(); n],
                     is_solved: false,
+                    bent: Vec::new(),
                     report,
                     pushed: Vec::new(),
                 }
@@ -275,7 +281,7 @@ impl Resting {
             whole.guess = Some(done.x);
             self.grow(missing, 4 * REACH, time_t0);
         };
-        let Try { x, gradient, is_solved, mut report, .. } = done;
+        let Try { x, gradient, is_solved, bent, mut report, .. } = done;
         report.add(&tries);
         report.contact_s += contact_s;
         rest.untouched = n - self.n_active;
@@ -285,7 +291,7 @@ impl Resting {
         self.was_fixed.clone_from(&fixed);
         self.last.clone_from(&start.constraints);
         report.rest.add(&rest);
-        Ok(StageEnd { x, v, report })
+        Ok(StageEnd { x, v, bent, report })
     }
 
     /// Sleepers that wake in the stage.
@@ -431,9 +437,9 @@ impl Resting {
             system.springs = Springs { springs: whole.start.constraints.springs.clone() };
             system.begin(local.stage(whole.start.h));
             system.make_room_for_contact()?;
-            let Solved { x, gradient, is_solved, report } =
+            let Solved { x, gradient, is_solved, bent, report } =
                 local.solve(system, solver, settings, whole)?;
-            return Ok(Try { x, gradient, is_solved, report, pushed: Vec::new() });
+            return Ok(Try { x, gradient, is_solved, bent, report, pushed: Vec::new() });
         }
         if self.patch.is_none() {
             report.parts += 1;

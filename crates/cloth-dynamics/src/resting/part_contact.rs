@@ -156,6 +156,11 @@ impl Contact for PartContact {
         shared.whole.as_mut().is_some_and(|whole| whole.look(&all))
     }
 
+    fn is_passed(&self, x: &[World3]) -> bool {
+        let all = self.shared().everywhere(&self.part, x);
+        self.with(|whole| whole.is_passed(&all))
+    }
+
     fn secure(&mut self, x: &mut [World3], _: &[bool]) -> Result<usize, Blocked> {
         let mut shared = self.shared();
         let before = shared.everywhere(&self.part, x);

@@ -359,6 +359,10 @@ impl Contact for SurfaceContact {
         is_new
     }
 
+    fn is_passed(&self, x: &[World3]) -> bool {
+        self.touches.iter().any(|touch| touch.gap(x) <= 0.0)
+    }
+
     fn secure(&mut self, x: &mut [World3], fixed: &[bool]) -> Result<usize, Blocked> {
         let n_moved = self.free_way(x, fixed)?;
         self.off_target = x.iter().zip(&self.target).map(|(x, target)| x - target).collect();
