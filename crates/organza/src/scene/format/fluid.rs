@@ -176,10 +176,10 @@ pub struct FluidRestraint {
     /// Error of position that is accepted (m).
     #[serde(default)]
     pub error_m: Option<f64>,
-    /// Particles that move by less than this in the picture rest (pixels per frame).
+    /// Particles that move by less than this from picture to picture rest (pixels).
     #[serde(default)]
     pub restrain_below_px_per_frame: Option<f64>,
-    /// Particles that move by more than this in the picture move freely (pixels per frame).
+    /// Particles that move by more than this from picture to picture move freely (pixels).
     #[serde(default)]
     pub restore_above_px_per_frame: Option<f64>,
     /// By view: speed up to which a particle rests at most, however far it is from the picture (m/s); absent
