@@ -70,7 +70,7 @@ impl std::fmt::Debug for System {
 }
 
 /// A time in which nothing is dissipated (s).
-const MOMENT: f64 = 1e-12;
+pub(crate) const MOMENT: f64 = 1e-12;
 
 impl System {
     /// Builds the forces that the fabrics and the environment call for, and the matrix pattern.
@@ -174,6 +174,11 @@ impl System {
         if let Some(resting) = &self.resting {
             resting.settle(&mut cloth.v, &cloth.m, time);
         }
+    }
+
+    /// Whether vertices stand or are free: see [`RestingPolicy::bleeding`].
+    pub(crate) fn rests_by_friction(&self) -> bool {
+        self.resting.as_ref().is_some_and(|resting| !resting.conserves())
     }
 
     /// Puts vertices to rest at the end of a step that began with these velocities (m/s).

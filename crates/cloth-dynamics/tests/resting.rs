@@ -336,6 +336,22 @@ fn thresholds_at_their_extremes() {
     }
 }
 
+/// However high the thresholds, rest holds no cloth in the air, but those that say for ever.
+#[test]
+fn nothing_stays_in_the_air() {
+    for (v_r, falls) in [(0.01, true), (1.0, true), (100.0, true), (f64::INFINITY, false)] {
+        let mut run = Run::new(4, Some(speed(v_r, Some(0.2))), NONE);
+        run.held = Constraints::default();
+        let before = run.cloth.x.clone();
+        let n = (50.0 * (1.0 + v_r.min(100.0) / 4.0)) as usize;
+        (0..n).for_each(|_| {
+            run.step(&mut ImplicitEuler, 0.02);
+        });
+        let fell = run.cloth.x.iter().zip(&before).all(|(a, b)| (a - b).norm() > 0.5);
+        assert_eq!(fell, falls, "{v_r} m/s");
+    }
+}
+
 /// A force that friction at rest withstands, but not that in motion, makes damped cloth creep. It ends
 /// that, from above and from below.
 #[test]

@@ -207,7 +207,7 @@ fn the_table_cloth_sleeps_beside_the_ball_and_after_it() {
     assert_eq!(state(100).stages_slept, state(100).stages);
     // The ball is on the cloth, which it moves.
     let moving = state(140);
-    assert!(moving.resting < 325 && moving.untouched > 0 || moving.stages_slept == 0, "{moving:?}");
+    assert!(moving.resting < 325 && moving.resting > 100, "{moving:?}");
     assert!(world.cloth.x.iter().zip(&start).any(|(a, b)| (a - b).norm() > 1e-3));
     assert_eq!(state(220).stages_slept, state(220).stages, "{:?}", state(220));
     assert!(reports.iter().all(|report| report.crossings.is_none_or(|n| n == 0)));
@@ -290,9 +290,9 @@ fn a_resting_crowd_dances_in_part() {
     let mut world = World::new(&loaded).unwrap();
     run(&mut world, 75);
     let state = |report: &FrameReport| report.restraint.clone().unwrap();
-    let after = run(&mut world, 15);
-    assert_eq!(world.crossings(90), None);
-    let last = state(&after[14]);
+    let after = run(&mut world, 30);
+    assert_eq!(world.crossings(105), None);
+    let last = state(&after[29]);
     let share = |garment: usize| {
         let mut counts = [0usize; 2];
         for run in last.states[garment].split_inclusive(char::is_alphabetic) {

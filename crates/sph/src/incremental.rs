@@ -129,6 +129,12 @@ impl Update<'_> {
         let moves = |i: &u32| marks[*i as usize] & MOVED != 0;
         let asked = (0..marks.len()).step_by(ASKED);
         let n = asked.len();
+        // Few movers do not reach so many.
+        let reach = |&i: &u32| 1 + self.neighbours.candidates(i as usize).len();
+        let reached: usize = self.movers.iter().map(reach).sum();
+        if reached as f64 <= MOST_TOUCHED * marks.len() as f64 {
+            return false;
+        }
         let touched = asked
             .filter(|&i| marks[i] & MOVED != 0 || self.neighbours.candidates(i).iter().any(moves));
         touched.count() as f64 > MOST_TOUCHED * n as f64

@@ -56,7 +56,12 @@ pub(crate) fn take_back(
     if excess <= ROUNDING * (energy.abs() + potential.abs()) {
         return Ok(());
     }
-    let mut area = Area::around(bent, system, x.len());
+    // What stands by friction goes on to stand.
+    let is_friction = system.rests_by_friction();
+    let stands = |i: u32| is_friction && v[i as usize] == World3::zeros();
+    let bent: Vec<u32> = bent.iter().copied().filter(|&i| !stands(i)).collect();
+    let mut area = Area::around(&bent, system, x.len());
+    (0..x.len() as u32).for_each(|i| area.is_barred[i as usize] = stands(i));
     for (i, _) in constraints(time + h).fixed {
         area.is_barred[i as usize] = true;
     }
@@ -70,6 +75,8 @@ pub(crate) fn take_back(
         rings *= 2;
     };
     if own < PLENTY * excess && !system.accepts_rise {
+        // The next try knows nothing of this one.
+        system.wake_all();
         return Err(SolveError::Rise { time: time + h, h });
     }
     let kept = if own > 0.0 { (1.0 - excess / own).max(0.0).sqrt() } else { 1.0 };

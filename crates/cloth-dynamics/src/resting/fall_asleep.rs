@@ -55,7 +55,7 @@ impl Resting {
                     Some(_) => (beyond(f, grip[i]), self.gathered[i], p_r),
                 }
             };
-            let bleeding = self.policy.rate();
+            let bleeding = self.policy.rate(&whole.held[i]);
             self.queue.rest(i, Rest { since: time, p, f, p_r, bleeding });
             self.active[i] = false;
             self.n_active -= 1;

@@ -13,17 +13,19 @@
 //!   gentle drag, which moves no equilibrium.
 //! - A free vertex is put to rest, some times in τ, when it and all near it are slow, their velocities
 //!   hardly change, and friction withstands the forces that are left when they stand. Nothing that swings
-//!   is slow and balanced at once.
+//!   is slow and balanced at once. A piece of cloth that moves comes to rest as a whole: were a part of it
+//!   to stand, the others would pull at that in every stage, and no stage would be cheaper. One that
+//!   stands but in some places comes to rest there.
 //!
-//! A stage with vertices held fast ends below its start in kinetic plus potential energy like any other,
-//! and putting to rest takes kinetic energy, so nothing is ever gained, at any stiffness and step.
+//! A stage with vertices held fast ends below its start in kinetic plus potential energy like any stage of
+//! backward Euler, at any stiffness and step, and putting to rest takes kinetic energy: nothing is gained.
 
 use super::local::{Try, WholeStage};
 use super::{Patch, REACH, Resting, RestingPolicy};
 use crate::contact::Contact;
 use crate::force::Stage;
 use crate::integrator::{StageStart, Step};
-use crate::system::System;
+use crate::system::{MOMENT, System};
 use arps::{Held, Motion, Particle, bleeding_kick};
 use mesh_core::{ClothState, World3};
 
@@ -34,19 +36,17 @@ const SLOW: f64 = 0.5;
 /// Acceleration in units of p_r/τ and the mass at which one is balanced. It is well below [`STATIC`]:
 /// stiff forces change as the neighbours come to rest.
 const BALANCED: f64 = 1.6;
+/// The most acceleration that friction at rest withstands (m/s²): whatever the thresholds, nothing stays in
+/// the air.
+const MOST: f64 = 5.0;
 /// How often in τ who comes to rest is looked for.
 const LOOKS: f64 = 8.0;
-/// Any step will do where nothing moves (s).
-const MOMENT: f64 = 1.0;
 /// Longest time in units of τ for which a vertex is not put to rest again; each time that it is pulled at
 /// soon after, the time doubles.
 const RESTLESS: f64 = 2.0;
 /// Gathered momentum in units of p_r beyond which a stage is made again: what is little above it may as
 /// well move from the next stage on.
 const HARD: f64 = 2.0;
-/// Share of a piece of cloth that may move when others of it are put to rest. What moves pulls at what
-/// stands, and stages that free it again cost more than those that stand save.
-const BUSY: f64 = 0.1;
 /// The most doublings of the neighbourhood that is freed.
 const MAX_DOUBLINGS: usize = 16;
 
@@ -82,9 +82,11 @@ impl RestingPolicy {
         slowed
     }
 
-    /// Time constant with which momentum bleeds away at rest (s).
-    pub(super) fn rate(&self) -> Option<f64> {
-        self.bleeding.map(|tau| tau / STATIC)
+    /// Time constant with which momentum bleeds away at rest that the policy holds so (s).
+    pub(super) fn rate(&self, held: &Held) -> Option<f64> {
+        let v_r = held.p_r() / held.mass();
+        let least = if v_r < f64::INFINITY { v_r / MOST } else { 0.0 };
+        self.bleeding.map(|tau| (tau / STATIC).max(least))
     }
 
     /// Marks of the vertices that stand at the start of a stage, but for `loose` ones, if momentum bleeds.
@@ -97,14 +99,18 @@ impl RestingPolicy {
     ) -> Option<Vec<bool>> {
         let stands = |i: usize| {
             let is_still = start.velocity[i] == World3::zeros() && start.base[i] == start.x_t0[i];
-            !fixed[i] && !held[i].is_free() && (is_still || held[i].p_r() == f64::INFINITY)
+            !fixed[i] && !held[i].is_free() && (is_still || is_for_ever(&held[i]))
         };
         self.bleeding?;
         let mut all: Vec<bool> = (0..held.len()).map(stands).collect();
-        let is_for_ever = |i: usize| held[i].p_r() == f64::INFINITY;
-        loose.iter().for_each(|&i| all[i as usize] &= is_for_ever(i as usize));
+        loose.iter().for_each(|&i| all[i as usize] &= is_for_ever(&held[i as usize]));
         Some(all)
     }
+}
+
+/// Whether a vertex never moves.
+pub(super) fn is_for_ever(held: &Held) -> bool {
+    held.p_r() == f64::INFINITY
 }
 
 /// What of a force (N) is left beyond what friction in contacts holds (N).
@@ -125,7 +131,8 @@ impl Resting {
         grip
     }
 
-    /// What active vertices that stand have gathered at the end of a stage (kg m/s).
+    /// What active vertices that stand have gathered at the end of a stage (kg m/s). If the past is not known
+    /// it is what they will have gathered in the end, so that nothing is held for longer by forgetting.
     fn gathers(
         &self,
         whole: &WholeStage<'_>,
@@ -133,8 +140,14 @@ impl Resting {
         grip: &[f64],
         i: usize,
     ) -> World3 {
-        let rate = self.policy.rate().expect("momentum bleeds where anything stands");
-        bleeding_kick(&self.gathered[i], &beyond(-gradient[i], grip[i]), whole.start.h, rate)
+        let rate = self.policy.rate(&whole.held[i]).expect("momentum bleeds where anything stands");
+        let f = beyond(-gradient[i], grip[i]);
+        let &StageStart { time_t0, time, .. } = whole.start;
+        if self.knows_past {
+            bleeding_kick(&self.gathered[i], &f, time - time_t0, rate)
+        } else {
+            f * rate
+        }
     }
 
     /// Frees what stands no longer with the forces at the end of a try of a stage; which vertices that are.
@@ -149,11 +162,12 @@ impl Resting {
             return Vec::new();
         };
         let grip = self.grip(contact, whole);
+        let hard = if self.knows_past { HARD } else { 1.0 };
         let is_pulled = |i: usize| {
             let p_r = whole.held[i].p_r();
-            self.active[i] && stands[i] && {
+            self.active[i] && stands[i] && !is_for_ever(&whole.held[i]) && {
                 done.x[i] != whole.from[i]
-                    || self.gathers(whole, &done.gradient, &grip, i).norm() > HARD * p_r
+                    || self.gathers(whole, &done.gradient, &grip, i).norm() > hard * p_r
             }
         };
         let pulled: Vec<u32> =
@@ -163,8 +177,7 @@ impl Resting {
         let freed = self.near.around(pulled, rings);
         self.restless.free(&freed, self.active.len(), whole.start.time, tau);
         let Some(stands) = &mut whole.stands else { return Vec::new() };
-        let is_for_ever = |i: usize| whole.held[i].p_r() == f64::INFINITY;
-        freed.iter().for_each(|&i| stands[i as usize] &= is_for_ever(i as usize));
+        freed.iter().for_each(|&i| stands[i as usize] &= is_for_ever(&whole.held[i as usize]));
         freed
     }
 
@@ -179,7 +192,7 @@ impl Resting {
         let (grip, mut pulled) = (self.grip(contact, whole), Vec::new());
         for i in (0..stands.len()).filter(|&i| self.active[i]) {
             let p_r = whole.held[i].p_r();
-            let gathers = stands[i] && p_r < f64::INFINITY;
+            let gathers = stands[i] && !is_for_ever(&whole.held[i]);
             let zero = World3::zeros;
             let p = if gathers { self.gathers(whole, gradient, &grip, i) } else { zero() };
             if p.norm() > p_r {
@@ -187,6 +200,7 @@ impl Resting {
             }
             self.gathered[i] = p;
         }
+        self.knows_past = true;
         self.loose = self.near.around(pulled, REACH);
         let tau = self.policy.bleeding.expect("momentum bleeds where anything stands");
         self.restless.free(&self.loose, stands.len(), whole.start.time, tau);
@@ -213,7 +227,7 @@ impl Resting {
             self.policy.restraint.at(&particle).p_r() / m[i]
         };
         // Acceleration (m/s²).
-        let little = |v_r: f64| BALANCED / tau * v_r;
+        let little = |v_r: f64| BALANCED * (v_r / tau).min(MOST / STATIC);
         let is_calm = |i: usize| {
             let (v_r, change) = (v_r(i), (v[i] - before[i]).norm());
             v[i].norm() <= SLOW * v_r && change <= little(v_r) * step.h
@@ -222,7 +236,8 @@ impl Resting {
         let is_busy = |i: usize| moves(i) && !(self.restless.may_rest(i, time) && is_calm(i));
         let busy: Vec<u32> = (0..n).filter(|&i| is_busy(i)).map(|i| i as u32).collect();
         self.restless.calm_down(time);
-        let rests = self.may_rest(busy.iter().copied());
+        let stands = |i: usize| !moves(i);
+        let rests = self.may_rest(busy.iter().copied(), stands);
         let is_new = |i: usize| rests[i] && moves(i);
         if !(0..n).any(is_new) {
             return;
@@ -230,25 +245,30 @@ impl Resting {
         let (gradient, grip) = at_rest(&mut self.patch, system, x, &rests);
         let is_driven = |i: usize| beyond(gradient[i], grip[i]).norm() > little(v_r(i)) * m[i];
         let driven = (0..n).filter(|&i| is_new(i) && is_driven(i)).map(|i| i as u32);
-        let rests = self.may_rest(busy.iter().copied().chain(driven));
+        let rests = self.may_rest(busy.iter().copied().chain(driven), |i| v[i] == World3::zeros());
         v.iter_mut().zip(rests).filter(|(_, rests)| *rests).for_each(|(v, _)| *v = World3::zeros());
     }
 
-    /// Marks of vertices that are far from these, where that is a good part of what hangs together.
-    fn may_rest(&self, busy: impl Iterator<Item = u32>) -> Vec<bool> {
+    /// Marks of vertices that are far from these busy ones, in pieces of cloth of which nobody is busy or
+    /// most `stand` already.
+    fn may_rest(
+        &self,
+        busy: impl Iterator<Item = u32>,
+        stands: impl Fn(usize) -> bool,
+    ) -> Vec<bool> {
         let mut rests = vec![true; self.active.len()];
         self.near.around(busy, 2 * REACH).into_iter().for_each(|i| rests[i as usize] = false);
         let pieces = self.near.pieces();
-        let mut counts = vec![[0, 0]; pieces.iter().max().map_or(0, |last| last + 1)];
-        for (piece, rests) in pieces.iter().zip(&rests) {
-            counts[*piece][usize::from(*rests)] += 1;
+        let n_pieces = pieces.iter().max().map_or(0, |last| last + 1);
+        let (mut n, mut n_busy, mut n_stands) =
+            (vec![0; n_pieces], vec![0; n_pieces], vec![0; n_pieces]);
+        for (i, &piece) in pieces.iter().enumerate() {
+            n[piece] += 1;
+            n_busy[piece] += usize::from(!rests[i]);
+            n_stands[piece] += usize::from(stands(i));
         }
-        let is_worth_it =
-            |[moving, resting]: [usize; 2]| moving as f64 <= BUSY * (moving + resting) as f64;
-        rests
-            .iter_mut()
-            .zip(pieces)
-            .for_each(|(rests, piece)| *rests &= is_worth_it(counts[*piece]));
+        let is_worth_it = |piece: usize| n_busy[piece] == 0 || 2 * n_stands[piece] > n[piece];
+        rests.iter_mut().zip(pieces).for_each(|(rests, &piece)| *rests &= is_worth_it(piece));
         rests
     }
 }
@@ -268,8 +288,10 @@ impl Restless {
         self.since.resize(n, [f64::NEG_INFINITY, 0.0]);
         for &i in freed {
             let [since, wait] = &mut self.since[i as usize];
-            *wait = (2.0 * *wait).clamp(tau / LOOKS, RESTLESS * tau);
-            *since = time;
+            if time > *since {
+                *wait = (2.0 * *wait).clamp(tau / LOOKS, RESTLESS * tau);
+                *since = time;
+            }
         }
     }
 

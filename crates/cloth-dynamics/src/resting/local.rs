@@ -1,5 +1,6 @@
 //! A restrained stage of the whole cloth, and the same in the numbers of the part that is solved.
 
+use super::friction::is_for_ever;
 use crate::force::Stage;
 use crate::integrator::StageStart;
 use crate::newton::restrained::Restrained;
@@ -112,7 +113,7 @@ impl Local {
             let i = i as usize;
             let is_fixed = whole.is_fixed(i) || !answers(i);
             local.fixed.push(is_fixed);
-            local.pinned.push(whole.fixed[i] || !answers(i));
+            local.pinned.push(whole.fixed[i] || !answers(i) || is_for_ever(&whole.held[i]));
             let target = if is_fixed { local.starts[0][k] } else { whole.target(i) };
             local.target.push(target);
             let guess = whole.guess.as_ref().filter(|_| !is_fixed);

@@ -57,9 +57,9 @@ pub struct RestingPolicy {
     /// ‖p‖ = p_r for ever, and while it slows down a stage solves many linear systems. With τ, what moves
     /// has full dynamics, and a stage costs what it does without restraint. What is slower than p_r/2 with
     /// all near it, and hardly gets faster, is put to rest, and stays until the momentum that it gathers
-    /// exceeds p_r, while that bleeds in τ/2: so until more than 2 p_r/τ pulls at it for long, besides what
-    /// friction in its contacts holds. Kinetic and potential energy together only fall by it; momentum is
-    /// not conserved, and p_f is of no account.
+    /// exceeds p_r, while that bleeds in τ/8: so until more than 8 p_r/τ pulls at it for long, besides what
+    /// friction in its contacts holds. What is slower than p_f loses in τ what restraint would hold back.
+    /// Kinetic and potential energy together only fall by it; momentum is not conserved.
     pub bleeding: Option<f64>,
 }
 
@@ -69,13 +69,15 @@ pub(crate) struct Resting {
     near: Neighbours,
     active: Vec<bool>,
     n_active: usize,
-    /// Forces of the active vertices, unless all or none are active.
+    /// Forces of the active vertices, unless all or none are, or they are others than in the last stage.
     patch: Option<Patch>,
     queue: WakeQueue,
     /// Gradient of contact in the forces of sleepers (N); empty without contact.
     touching: Vec<World3>,
     /// Where momentum bleeds, what active vertices that stand have gathered (kg m/s).
     gathered: Vec<World3>,
+    /// False if it is not known what those have gathered.
+    knows_past: bool,
     /// Of these, those that are free in the next stage.
     loose: Vec<u32>,
     restless: Restless,
@@ -101,6 +103,7 @@ impl Resting {
             queue: WakeQueue::new(),
             touching: Vec::new(),
             gathered: vec![World3::zeros(); n],
+            knows_past: false,
             loose: Vec::new(),
             restless: Restless::default(),
             was_fixed: vec![false; n],
@@ -111,6 +114,7 @@ impl Resting {
     /// Wakes everything and forgets the past; momenta must have been [settled](Resting::settle).
     pub(crate) fn wake_all(&mut self) {
         self.activate_all();
+        self.knows_past = false;
         self.loose.clear();
         self.restless = Restless::default();
     }
@@ -129,8 +133,8 @@ impl Resting {
         for i in 0..self.active.len() {
             let Some(&rest) = self.queue.get(i) else { continue };
             let (mass, x) = (cloth.m[i], cloth.x[i]);
-            let p_r = policy.restraint.at(&Particle { index: i, mass, x, time }).p_r();
-            let bleeding = policy.rate();
+            let held = policy.restraint.at(&Particle { index: i, mass, x, time });
+            let (p_r, bleeding) = (held.p_r(), policy.rate(&held));
             if !self.was_fixed[i] && (p_r != rest.p_r || bleeding != rest.bleeding) {
                 let p = rest.momentum_at(time);
                 self.queue.rest(i, Rest { since: time, p, p_r, bleeding, ..rest });
@@ -190,6 +194,7 @@ impl Resting {
         };
         let held: Vec<Held> = (0..n).map(held).collect();
         check_laws(&held, time_t0)?;
+        system.springs.springs.clone_from(&start.constraints.springs);
         let slowed = self.policy.slowed(&held, start.velocity, h);
         let start =
             &StageStart { velocity: &slowed, constraints: start.constraints.clone(), ..*start };
@@ -311,7 +316,8 @@ impl Resting {
                 {
                     let since = start.time - start.h;
                     let p = rest.momentum_at(since);
-                    self.queue.rest(i, Rest { since, p, p_r: held.p_r(), ..rest });
+                    let (p_r, bleeding) = (held.p_r(), self.policy.rate(held));
+                    self.queue.rest(i, Rest { since, p, p_r, bleeding, ..rest });
                 }
             }
         }
@@ -434,7 +440,6 @@ impl Resting {
         let n = self.active.len();
         if self.n_active == n {
             let local = Local::new(whole, (0..n as u32).collect(), &|_| true);
-            system.springs = Springs { springs: whole.start.constraints.springs.clone() };
             system.begin(local.stage(whole.start.h));
             system.make_room_for_contact()?;
             let Solved { x, gradient, is_solved, bent, report } =
