@@ -197,6 +197,14 @@ impl System {
         }
     }
 
+    /// Wakes some vertices at a time (s), and what is near them; for the same reason as
+    /// [`System::wake_all`].
+    pub fn wake(&mut self, vertices: Vec<u32>, time: f64) {
+        if let Some(resting) = &mut self.resting {
+            resting.wake(vertices, time);
+        }
+    }
+
     /// The pattern of the forces, without contact.
     pub(crate) fn mesh_pattern(&self) -> &BlockPattern {
         &self.mesh_pattern

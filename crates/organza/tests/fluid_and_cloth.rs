@@ -177,6 +177,39 @@ fn the_fountain_presses_its_sheet_down() {
     assert!(with < without - 0.02, "{with} m with water, {without} m without");
 }
 
+/// Where water meets one sheet, another that rests sleeps on; and one that is let go falls.
+#[test]
+fn what_water_does_not_touch_rests_or_falls_as_without() {
+    let restraint =
+        "restraint: { thresholds: { speed: { rest_m_per_s: 0.02, full_m_per_s: 0.08 } } },";
+    let far = |loaded: &str, z: f64| {
+        let sheet = format!(
+            "{{ name: 'other', fabric: 'woven-firm', mesh: {{ grid: {{ size_m: [0.6, 0.6], cells: [8, 8] }} }},
+                transform: {{ translate: [2, 0, {z}] }} }}],\n fluids:"
+        );
+        loaded.replace("],\n            fluids:", &format!(", {sheet}"))
+    };
+    let mut still = world(&scene(&far(&collision(restraint, "", ""), 0.0)));
+    let n = still.cloth.x.len();
+    let start = still.cloth.x.clone();
+    for _ in 0..12 {
+        let report = still.advance().unwrap().restraint.unwrap();
+        assert!(report.untouched >= (n / 2 - 20) * (report.stages - 1), "{report:?}");
+    }
+    assert!(still.cloth.x[..n / 2].iter().any(|x| x.z < -0.01));
+    assert_eq!(still.cloth.x[n / 2..], start[n / 2..]);
+
+    let falling =
+        collision(restraint, "", "").replace("gravity: [0, 0, 0]", "gravity: [0, 0, -9.81]");
+    let mut falling = world(&scene(&far(&falling, 3.0)));
+    for _ in 0..12 {
+        falling.advance().unwrap();
+    }
+    let fell = start[n / 2..].iter().zip(&falling.cloth.x[n / 2..]).map(|(a, b)| 3.0 + a.z - b.z);
+    // g t²/2 = 0.28 m, less the drag of the weave.
+    assert!(fell.clone().all(|way| way > 0.2), "{:?}", fell.collect::<Vec<_>>());
+}
+
 #[test]
 fn cloths_that_a_fluid_does_not_meet_are_left_alone() {
     let text = collision("", "", "cloths: [],");

@@ -4,7 +4,7 @@ use crate::error::{ViewError, check};
 use crate::frustum::Frustum;
 use crate::settings::ViewSettings;
 use crate::window::Sample;
-use arps::{Held, Law, Particle, Restraint, Speed, ThresholdError};
+use arps::{Automatic, Held, Law, Particle, Restraint, Speed, ThresholdError};
 use mesh_core::{World3, par};
 
 /// For every position of any particles (m) the speed that shows as one pixel per frame (m/s), the
@@ -96,6 +96,16 @@ impl PixelThresholds {
             return Err(ThresholdError::Value { which: "most", value: most, unit: "m/s" });
         }
         Ok(PixelThresholds { thresholds: Speed::with_law(law, rest, full)?, most })
+    }
+
+    /// Thresholds that move what shows by at most `error` pixels over so many frames, as
+    /// [`Automatic::for_error`] says, with a frame for the unit of time; nothing rests above `most` (m/s).
+    ///
+    /// # Errors
+    /// An error that is negative or not a number, no frames, and as [`PixelThresholds::new`].
+    pub fn for_error(law: Law, error: f64, frames: f64, most: f64) -> Result<Self, ThresholdError> {
+        let speed = Automatic::for_error(error, frames)?.speed;
+        PixelThresholds::new(law, speed.v_r(), speed.v_f(), most)
     }
 
     /// Pixels per frame up to which a particle rests.

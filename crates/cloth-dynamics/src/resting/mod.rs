@@ -119,6 +119,11 @@ impl Resting {
         self.restless = Restless::default();
     }
 
+    /// Wakes some vertices at a time (s), and what is near them.
+    pub(crate) fn wake(&mut self, vertices: Vec<u32>, time: f64) {
+        self.grow(vertices, 2 * REACH, time);
+    }
+
     fn activate_all(&mut self) {
         self.active.fill(true);
         self.n_active = self.active.len();

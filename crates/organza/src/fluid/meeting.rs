@@ -42,6 +42,14 @@ pub(crate) struct Load {
     before: Vec<World3>,
 }
 
+impl Load {
+    /// Vertices of the cloth that bear any of it.
+    pub(crate) fn wet(&self, cloth: &ClothState) -> Vec<u32> {
+        let is_wet = |i: usize| self.masses[i] > 0.0 || self.before[i] != cloth.v[i];
+        (0..self.masses.len()).filter(|&i| is_wet(i)).map(|i| i as u32).collect()
+    }
+}
+
 impl Meeting {
     /// A fluid of particles at a `spacing` (m) among the cloths and obstacles with these numbers; `None`
     /// if there are none.

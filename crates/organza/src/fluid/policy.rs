@@ -51,11 +51,8 @@ pub(crate) fn of(restraint: &FluidRestraint, run: Run) -> Result<Policy, Thresho
     };
     let value = |number: Option<f64>| number.unwrap_or(0.0);
     let duration = restraint.duration_s.unwrap_or(run.duration);
-    let view = |law, rest, full| {
-        let most = restraint.most_m_per_s.unwrap_or(FLUID_MOST_M_PER_S);
-        let thresholds = PixelThresholds::new(law, rest, full, most)?;
-        Ok(Policy::View(ViewRestraint { thresholds, pixel_speeds: Vec::new() }))
-    };
+    let most = restraint.most_m_per_s.unwrap_or(FLUID_MOST_M_PER_S);
+    let view = |thresholds| Policy::View(ViewRestraint { thresholds, pixel_speeds: Vec::new() });
     Ok(match restraint.policy {
         RestraintPolicy::Speed => Policy::Speed(Speed::with_law(
             law,
@@ -70,16 +67,15 @@ pub(crate) fn of(restraint: &FluidRestraint, run: Run) -> Result<Policy, Thresho
         RestraintPolicy::Automatic => {
             Policy::Speed(Automatic::for_error(value(restraint.error_m), duration)?.speed)
         }
-        RestraintPolicy::View => view(
+        RestraintPolicy::View => view(PixelThresholds::new(
             law,
             value(restraint.restrain_below_px_per_frame),
             value(restraint.restore_above_px_per_frame),
-        )?,
+            most,
+        )?),
         RestraintPolicy::AutomaticView => {
-            // The same bound in pixels, with a frame for the unit of time.
             let frames = duration / run.frame_s;
-            let speed = Automatic::for_error(value(restraint.error_px), frames)?.speed;
-            view(speed.law(), speed.v_r(), speed.v_f())?
+            view(PixelThresholds::for_error(law, value(restraint.error_px), frames, most)?)
         }
     })
 }

@@ -44,8 +44,8 @@ impl World {
             meeting.load(&mut water.fluid, &mut self.cloth, scene, step.time).map_err(told)?;
         let mut spent = clock.elapsed();
         if !self.garments.is_empty() {
-            if let (Some(_), Some(prepared)) = (&load, &mut self.prepared) {
-                prepared.system.wake_all();
+            if let (Some(load), Some(prepared)) = (&load, &mut self.prepared) {
+                prepared.system.wake(load.wet(&self.cloth), step.time);
             }
             self.wet = load.as_ref().map(|load| load.masses.clone()).unwrap_or_default();
             let done = self.step(step, frame, 0, solve, retries, seconds);

@@ -66,13 +66,9 @@ pub(super) fn thresholds(
         format::Thresholds::AutomaticView { error_px } => {
             let limit = limits::MAX_PICTURE_PX.into();
             at.key("automatic-view.error_px").not_negative(error_px, limit, "pixels");
-            // The same bound in pixels, with a frame for the unit of time.
-            let found = Automatic::for_error(error_px, f64::from(run.frames));
-            found.and_then(|found| {
-                let (rest, full) = (found.speed.v_r(), found.speed.v_f());
-                let most = format::MOST_M_PER_S;
-                PixelThresholds::new(law, rest, full, most).map(Thresholds::View)
-            })
+            let frames = f64::from(run.frames);
+            PixelThresholds::for_error(law, error_px, frames, format::MOST_M_PER_S)
+                .map(Thresholds::View)
         }
     };
     if matches!(made, Ok(Thresholds::View(_))) && !run.has_camera {
