@@ -3,7 +3,6 @@
 
 use super::program::{Measured, Simulation};
 use super::report::{Figure, Report};
-use super::run_info::RunInfo;
 use super::surface::Surface;
 use super::{Benchmark, Context};
 use crate::command::{Failure, say};
@@ -28,6 +27,8 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 
 /// Frames over which speeds are compared: a second.
 const WINDOW: usize = 25;
+/// How often the hanging cloth is run with restraint and without.
+const ROUNDS: usize = 3;
 /// Frames until the hanging cloth is pushed.
 const PUSHED: usize = 500;
 /// Points along each side of the sheet at which shapes are compared, less one.
@@ -64,10 +65,22 @@ fn hanging(context: &Context, report: &mut Report) -> Result<(), Failure> {
     let frames = if context.options.quick { PUSHED / 2 } else { 750 };
     let restrained = simulate(context, "hanging-cloth", frames, "restrained", &[])?;
     let plain = simulate(context, "hanging-cloth", frames, "plain", &["restraint=null"])?;
-    let ratios = speed_ups(&restrained.info, &plain.info);
+    let mut seconds = [&restrained, &plain].map(|run| run.info.each("/seconds/total"));
+    // Alternately, so that whatever else the machine does meets both.
+    for round in 1..if context.options.quick { 1 } else { ROUNDS } {
+        for (k, set) in [None, Some("restraint=null")].into_iter().enumerate() {
+            let sets: Vec<&str> = set.into_iter().collect();
+            let name = format!("hanging_{k}_{round}");
+            let again = simulate(context, "hanging-cloth", frames, &name, &sets)?;
+            let again = again.info.each("/seconds/total");
+            seconds[k].iter_mut().zip(again).for_each(|(least, again)| *least = least.min(again));
+        }
+    }
+    let ratios = speed_ups(&seconds);
     let note = format!(
-        "Wall time of frames without restraint over that with it, second by second, over {frames} frames; the \
-         mean is that of these ratios.{}",
+        "Wall time of frames without restraint over that with it, second by second, over {frames} frames, of \
+         each frame the fastest of {ROUNDS} alternating runs (of one in quick ones); the mean is that of \
+         these ratios.{}",
         restrained.info.troubles()
     );
     let least = ratios.iter().copied().min_by(f64::total_cmp);
@@ -77,7 +90,8 @@ fn hanging(context: &Context, report: &mut Report) -> Result<(), Failure> {
         let figure = value.and_then(|value| Figure::exact(value, "1", &note));
         report.add(&format!("arps.hanging.speedup.{what}"), figure);
     }
-    let whole = plain.info.sum("/seconds/total") / restrained.info.sum("/seconds/total");
+    let [fast, slow] = seconds.map(|each| each.iter().sum::<f64>());
+    let whole = slow / fast;
     let note = "Wall time of the whole run without restraint over that with it.";
     report.add("arps.hanging.speedup.whole", Figure::exact(whole, "1", note));
     let awake =
@@ -94,9 +108,8 @@ fn hanging(context: &Context, report: &mut Report) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Speed-up of every window.
-fn speed_ups(restrained: &RunInfo, plain: &RunInfo) -> Vec<f64> {
-    let seconds = [restrained, plain].map(|info| info.each("/seconds/total"));
+/// Speed-up of every window, from the seconds of frames with restraint and without.
+fn speed_ups(seconds: &[Vec<f64>; 2]) -> Vec<f64> {
     let sum = |part: &[f64]| part.iter().sum::<f64>();
     let windows = seconds[0].chunks_exact(WINDOW).zip(seconds[1].chunks_exact(WINDOW));
     windows.map(|(restrained, plain)| sum(plain) / sum(restrained)).collect()
