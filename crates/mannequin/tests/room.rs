@@ -1,7 +1,9 @@
-//! Room for cloth: however it moves, no parts of the skin close on each other.
+//! Room for cloth: however it moves, no parts of the skin close on each other, and skirts and trousers
+//! do not slide down to where they tie the legs together.
 
-use mannequin::{Action, Mannequin, Motion};
-use mesh_core::World3;
+use mannequin::{Action, Garment, Mannequin, Motion};
+use mesh_core::{Material2, VertexId, World3};
+use std::f64::consts::TAU;
 
 const ACTIONS: [Action; 4] = [Action::Walk, Action::Turn, Action::Kick, Action::Dance];
 /// Cosine of the angle between normals from which on parts of the skin face each other: a fold is then
@@ -63,6 +65,63 @@ fn no_parts_of_the_skin_close_on_each_other() {
             }
             println!("{action:?}, edges of {cell} m: {:.4} m", least.0);
             assert!(least.0 > Mannequin::ROOM, "{action:?}, edges of {cell} m: {least:?}");
+        }
+    }
+}
+
+/// Length of a string around points, seen from above (m): the integral of how far they reach (Cauchy).
+fn string_around(points: &[World3]) -> f64 {
+    let n = 360;
+    let reach = |k: i32| {
+        let (sine, cosine) = (TAU * f64::from(k) / f64::from(n)).sin_cos();
+        points.iter().map(|x| x.x * cosine + x.y * sine).fold(f64::NEG_INFINITY, f64::max)
+    };
+    (0..n).map(reach).sum::<f64>() * TAU / f64::from(n)
+}
+
+/// Length of a border in the pattern (m).
+fn border_length(garment: Garment, cell: f64, name: &str) -> f64 {
+    let sheet = garment.sheet(cell).unwrap();
+    let border = sheet.borders.iter().find(|b| b.name == name).unwrap();
+    let on_border = |v: u32| border.vertices.contains(&VertexId(v));
+    let side = |t: usize, k: usize| {
+        let corners = sheet.mesh.triangles()[t];
+        let [a, b] = [corners[k], corners[(k + 1) % 3]];
+        let pattern: [Material2; 3] = sheet.mesh.material()[t];
+        let length = (pattern[k] - pattern[(k + 1) % 3]).norm();
+        (on_border(a) && on_border(b)).then_some(length)
+    };
+    (0..sheet.mesh.n_triangles()).flat_map(|t| (0..3).filter_map(move |k| side(t, k))).sum()
+}
+
+#[test]
+fn waists_stay_above_the_hips() {
+    // Once over the hips, trousers hang lower at every kick, until their crotch ties the legs together;
+    // skirts fall.
+    let stretch = 1.1;
+    let waist = [Garment::Skirt, Garment::Trousers]
+        .into_iter()
+        .flat_map(|garment| [0.02, 0.03, 0.045, 0.06].map(|cell| (garment, cell)))
+        .map(|(garment, cell)| border_length(garment, cell, "waist"))
+        .fold(0.0, f64::max);
+    for cell in [0.015, 0.04] {
+        let standing = Mannequin::new(cell, Motion::STAND).unwrap();
+        let rest = standing.positions(0.0);
+        let hips: Vec<usize> =
+            (0..rest.len()).filter(|&v| (0.9..0.96).contains(&rest[v].z)).collect();
+        for action in ACTIONS {
+            let mut least = f64::INFINITY;
+            for seed in 0..4 {
+                let motion = Motion { action, phase: 0.0, seed, start: 0.0, ease: 0.0 };
+                let body = standing.moving(motion).unwrap();
+                for k in 0..24 {
+                    let x = body.positions(motion.period() * f64::from(k) / 24.0);
+                    let around: Vec<World3> = hips.iter().map(|&v| x[v]).collect();
+                    least = least.min(string_around(&around));
+                }
+            }
+            println!("{action:?}, edges of {cell} m: hips {least:.3} m, waist {waist:.3} m");
+            assert!(stretch * waist < least, "{action:?}: hips {least} m, waist {waist} m");
         }
     }
 }

@@ -16,10 +16,10 @@ pub enum Garment {
     /// A dress without sleeves, cut at the waist: `front`, `back`, `skirt-front`, `skirt-back`.
     /// Borders: `hem`, `neck`, `right-armhole`, `left-armhole`.
     Dress,
-    /// A skirt that rests on the hips: `front`, `back`. Borders: `hem`, `waist`.
+    /// A skirt that rests on the hips, its waist too narrow to slide over them: `front`, `back`. Borders: `hem`, `waist`.
     Skirt,
-    /// Wide trousers that rest on the hips: `front-right`, `front-left`, `back-right`, `back-left`.
-    /// Borders: `waist`, `right-hem`, `left-hem`.
+    /// Wide trousers with a waist too narrow to slide over the hips: `front-right`, `front-left`,
+    /// `back-right`, `back-left`. Borders: `waist`, `right-hem`, `left-hem`.
     Trousers,
     /// A jacket that is open in front, the side x < 0 over the other, with wide sleeves: `back`,
     /// `front-right`, `front-left`, `right-sleeve`, `left-sleeve`. Borders: `hem`, `opening`,

@@ -7,23 +7,28 @@ use std::f64::consts::PI;
 
 /// Half of the straight part of the cross-section (m).
 pub(super) const HALF: f64 = 0.06;
-/// Height and radius of the waist and of the hem (m).
-pub(super) const WAIST: [f64; 2] = [1.08, 0.102];
+/// Height of the waist (m).
+pub(super) const WAIST: f64 = 1.08;
+/// Radius of the cross-section there (m): stretched by a tenth, it does not slide over the hips.
+const RADIUS: f64 = 0.082;
+/// Height and radius of the hem (m).
 const HEM: [f64; 2] = [0.48, 0.33];
 
-/// Front and back, with `columns` cells across each; column i is at `share(i)` from −1 to 1 across.
+/// Front and back below a waist of `radius` (m), with `columns` cells across each; column i is at
+/// `share(i)` from −1 to 1 across.
 pub(super) fn panels(
     columns: usize,
     cell: f64,
+    radius: f64,
     share: impl Fn(usize) -> f64,
 ) -> Result<(Lattice, [Sheet; 2]), GenerateError> {
-    let length = (WAIST[0] - HEM[0]).hypot(HEM[1] - WAIST[1]);
+    let length = (WAIST - HEM[0]).hypot(HEM[1] - radius);
     let lattice = Lattice::new([columns, cells(length, cell, 2)])?;
     let make = |sign: f64| {
         panel(&lattice, |i, j| {
             let up = j as f64 / lattice.cells[1] as f64;
-            let [x, y] = stadium(HALF, mix(HEM[1], WAIST[1], up), share(i));
-            World3::new(sign * x, sign * y, mix(HEM[0], WAIST[0], up))
+            let [x, y] = stadium(HALF, mix(HEM[1], radius, up), share(i));
+            World3::new(sign * x, sign * y, mix(HEM[0], WAIST, up))
         })
     };
     Ok((lattice, [make(1.0)?, make(-1.0)?]))
@@ -41,10 +46,10 @@ pub(super) fn side_seams(lattice: &Lattice, front: usize, back: usize) -> [Seam;
 
 pub(super) fn skirt(cell: f64) -> Result<Sheet, GenerateError> {
     // As many as the middle between waist and hem wants.
-    let width = 2.0 * HALF + PI * 0.5 * (WAIST[1] + HEM[1]);
+    let width = 2.0 * HALF + PI * 0.5 * (RADIUS + HEM[1]);
     let columns = cells(width, cell, 4);
     let even = |i: usize| 2.0 * i as f64 / columns as f64 - 1.0;
-    let (lattice, sheets) = panels(columns, cell, even)?;
+    let (lattice, sheets) = panels(columns, cell, RADIUS, even)?;
     let mut sheets = Vec::from(sheets);
     lay_out(&mut sheets, 0.02);
     let mut sewn = sew(&sheets, &side_seams(&lattice, 0, 1))?;

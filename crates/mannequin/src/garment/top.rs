@@ -20,8 +20,11 @@ struct Shape {
     bulge: f64,
 }
 
+/// Radius of the cross-section at the waist of the dress, which hangs from the shoulders (m).
+const WAIST_OF_DRESS: f64 = 0.102;
+
 const DRESS: Shape = Shape {
-    radii: &[skirt::WAIST, [1.285, 0.122]],
+    radii: &[[skirt::WAIST, WAIST_OF_DRESS], [1.285, 0.122]],
     shoulder: 0.138,
     neck: 0.080,
     top: 1.525,
@@ -131,7 +134,8 @@ pub(super) fn dress(cell: f64) -> Result<Sheet, GenerateError> {
     let front = shape.whole(&lattice, rows, [shoulder, neck], 0.60, 1.0)?;
     let back = shape.whole(&lattice, rows, [shoulder, neck], 0.45, -1.0)?;
     let across = |i: usize| shape.across(i, [shoulder, neck]);
-    let (skirt_lattice, [skirt_front, skirt_back]) = skirt::panels(columns, cell, across)?;
+    let (skirt_lattice, [skirt_front, skirt_back]) =
+        skirt::panels(columns, cell, WAIST_OF_DRESS, across)?;
     let mut sheets = vec![front, back, skirt_front, skirt_back];
     lay_out(&mut sheets, 0.02);
     let side = |sheet, i| column(sheet, &lattice, i, 0..=rows[0]);

@@ -9,14 +9,14 @@ use std::f64::consts::PI;
 const HALF: f64 = 0.055;
 /// Height of hem, crotch and waist (m).
 const HEM: f64 = 0.13;
-const CROTCH: f64 = 0.745;
+const CROTCH: f64 = 0.77;
 const WAIST: f64 = 1.08;
 /// Radius of the cross-section at the hips by height (m).
-const HIPS: [[f64; 2]; 3] = [[0.88, 0.140], [0.96, 0.132], [1.08, 0.098]];
+const HIPS: [[f64; 2]; 4] = [[0.90, 0.140], [0.98, 0.113], [1.05, 0.083], [1.08, 0.082]];
 /// Inner and outer reach of a leg in x, and its half depth, by height (m).
-const INNER: [[f64; 2]; 3] = [[0.13, 0.034], [0.62, 0.018], [0.745, 0.0]];
-const OUTER: [[f64; 2]; 2] = [[0.13, 0.205], [0.745, 0.195]];
-const DEPTH: [[f64; 2]; 2] = [[0.13, 0.085], [0.745, 0.105]];
+const INNER: [[f64; 2]; 3] = [[0.13, 0.034], [0.62, 0.018], [0.77, 0.0]];
+const OUTER: [[f64; 2]; 2] = [[0.13, 0.205], [0.77, 0.195]];
+const DEPTH: [[f64; 2]; 2] = [[0.13, 0.085], [0.77, 0.105]];
 
 /// A point of the front of the leg at x > 0: `share` from 0 at the outer side to 1 at the inner one.
 fn point(share: f64, z: f64) -> World3 {
@@ -31,7 +31,7 @@ fn point(share: f64, z: f64) -> World3 {
     }
     // From half of an ellipse around the leg to a quarter of the cross-section of the hips.
     let hips = stadium(HALF, profile(&HIPS, z), 1.0 - share);
-    let above = (0.5 * PI * (up / 0.7).min(1.0)).sin();
+    let above = (0.5 * PI * (up / 0.55).min(1.0)).sin();
     World3::new(mix(leg[0], hips[0], above), mix(leg[1], hips[1], above), z)
 }
 
