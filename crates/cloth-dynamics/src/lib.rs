@@ -59,6 +59,7 @@ mod hinge;
 mod integrator;
 pub mod law;
 mod membrane;
+mod neighbours;
 mod newton;
 mod part;
 mod plane_contact;

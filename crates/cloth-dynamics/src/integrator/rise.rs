@@ -10,6 +10,7 @@
 //! take, and what the cloth touches stands still.
 
 use super::Step;
+use crate::neighbours::Neighbours;
 use crate::solve_report::SolveError;
 use crate::system::{Constraints, System};
 use mesh_core::{ClothState, World3, par};
@@ -92,7 +93,7 @@ pub(crate) fn take_back(
 
 /// Vertices around some, along the couplings of the system, contact among them.
 struct Area {
-    neighbours: Vec<Vec<u32>>,
+    near: Neighbours,
     is_in: Vec<bool>,
     /// Vertices that stay out of it.
     is_barred: Vec<bool>,
@@ -102,14 +103,10 @@ struct Area {
 
 impl Area {
     fn around(bent: &[u32], system: &System, n: usize) -> Area {
-        let mut neighbours = vec![Vec::new(); n];
-        for [a, b] in system.matrix.pattern().pairs() {
-            neighbours[a as usize].push(b);
-            neighbours[b as usize].push(a);
-        }
+        let near = Neighbours::new(system.matrix.pattern());
         let mut is_in = vec![false; n];
         bent.iter().for_each(|&i| is_in[i as usize] = true);
-        Area { neighbours, is_in, is_barred: vec![false; n], rim: bent.to_vec() }
+        Area { near, is_in, is_barred: vec![false; n], rim: bent.to_vec() }
     }
 
     /// Takes in this many rings of neighbours; false if there are none.
@@ -117,7 +114,7 @@ impl Area {
         let before = self.rim.clone();
         for _ in 0..rings {
             let mut next = Vec::new();
-            for &j in self.rim.iter().flat_map(|&i| &self.neighbours[i as usize]) {
+            for &j in self.rim.iter().flat_map(|&i| self.near.of(i as usize)) {
                 let is_new = !self.is_barred[j as usize] && !self.is_in[j as usize];
                 if is_new {
                     self.is_in[j as usize] = true;
@@ -143,7 +140,7 @@ impl Area {
             let mut part = vec![start as u32];
             let mut k = 0;
             while k < part.len() {
-                for &j in &self.neighbours[part[k] as usize] {
+                for &j in self.near.of(part[k] as usize) {
                     if self.is_in[j as usize] && !std::mem::replace(&mut seen[j as usize], true) {
                         part.push(j);
                     }

@@ -26,6 +26,7 @@ impl Resting {
         whole: &WholeStage<'_>,
         x: &[World3],
         v: &[World3],
+        grip: &[f64],
     ) {
         let &StageStart { x_t0, base, time, .. } = whole.start;
         let n = x.len();
@@ -37,7 +38,6 @@ impl Resting {
         let gradient = self.elastic_gradient(system, x);
         let contact = system.contact.as_deref();
         let touching = contact.map(|contact| gradient_of(contact, x));
-        let grip = self.grip(contact, whole);
         let mut is_wanted = vec![false; n];
         wanted.iter().for_each(|&i| is_wanted[i as usize] = true);
         for i in 0..n {

@@ -155,19 +155,18 @@ impl Resting {
         &mut self,
         whole: &mut WholeStage<'_>,
         done: &Try,
-        contact: Option<&dyn Contact>,
+        grip: &[f64],
         n_tries: usize,
     ) -> Vec<u32> {
         let (Some(stands), Some(tau)) = (&whole.stands, self.policy.bleeding) else {
             return Vec::new();
         };
-        let grip = self.grip(contact, whole);
         let hard = if self.knows_past { HARD } else { 1.0 };
         let is_pulled = |i: usize| {
             let p_r = whole.held[i].p_r();
             self.active[i] && stands[i] && !is_for_ever(&whole.held[i]) && {
                 done.x[i] != whole.from[i]
-                    || self.gathers(whole, &done.gradient, &grip, i).norm() > hard * p_r
+                    || self.gathers(whole, &done.gradient, grip, i).norm() > hard * p_r
             }
         };
         let pulled: Vec<u32> =
@@ -182,19 +181,14 @@ impl Resting {
     }
 
     /// Takes to the end of a stage what vertices that stand have gathered.
-    pub(super) fn gather(
-        &mut self,
-        whole: &WholeStage<'_>,
-        contact: Option<&dyn Contact>,
-        gradient: &[World3],
-    ) {
+    pub(super) fn gather(&mut self, whole: &WholeStage<'_>, gradient: &[World3], grip: &[f64]) {
         let Some(stands) = &whole.stands else { return };
-        let (grip, mut pulled) = (self.grip(contact, whole), Vec::new());
+        let mut pulled = Vec::new();
         for i in (0..stands.len()).filter(|&i| self.active[i]) {
             let p_r = whole.held[i].p_r();
             let gathers = stands[i] && !is_for_ever(&whole.held[i]);
             let zero = World3::zeros;
-            let p = if gathers { self.gathers(whole, gradient, &grip, i) } else { zero() };
+            let p = if gathers { self.gathers(whole, gradient, grip, i) } else { zero() };
             if p.norm() > p_r {
                 pulled.push(i as u32);
             }

@@ -17,12 +17,12 @@ mod fall_asleep;
 mod friction;
 mod local;
 mod momenta;
-mod neighbours;
 mod part_contact;
 
 use crate::contact::Contact;
 use crate::force::Stage;
 use crate::integrator::{StageEnd, StageStart, Step, plain_stage};
+use crate::neighbours::Neighbours;
 use crate::part::Part;
 use crate::point_forces::Springs;
 use crate::solve_report::{NewtonSettings, RestReport, SolveError, SolveReport};
@@ -32,7 +32,6 @@ use arps::{Held, Particle, Rest, Restraint, WakeQueue};
 use friction::Restless;
 use local::{Local, Solved, Try, WholeStage, check_laws, scattered};
 use mesh_core::{ClothState, World3};
-use neighbours::Neighbours;
 use part_contact::{PartContact, gradient_of};
 use std::sync::Arc;
 use std::time::Instant;
@@ -253,7 +252,7 @@ impl Resting {
             self.touching = vec![World3::zeros(); n];
         }
         let mut tries = SolveReport::default();
-        let done = loop {
+        let (done, grip) = loop {
             let clock = Instant::now();
             self.begin_contact(system, &whole, &mut rest);
             contact_s += clock.elapsed().as_secs_f64();
@@ -280,14 +279,22 @@ impl Resting {
                 }
             }
             if missing.is_empty() {
-                missing = self.pulled(&mut whole, &done, system.contact.as_deref(), rest.redone);
-            }
-            if missing.is_empty() {
-                break done;
+                let grip = self.grip(system.contact.as_deref(), &whole);
+                missing = self.pulled(&mut whole, &done, &grip, rest.redone);
+                if missing.is_empty() {
+                    break (done, grip);
+                }
             }
             rest.redone += 1;
-            let work = SolveReport { stages: 0, unconverged: 0, touches: 0, ..done.report };
-            tries.add(&work);
+            // Only the work of a try counts.
+            tries.add(&SolveReport {
+                stages: 0,
+                unconverged: 0,
+                residual: 0.0,
+                touches: 0,
+                shortened: 0,
+                ..done.report
+            });
             whole.guess = Some(done.x);
             self.grow(missing, 4 * REACH, time_t0);
         };
@@ -296,8 +303,8 @@ impl Resting {
         report.contact_s += contact_s;
         rest.untouched = n - self.n_active;
         let v = self.momenta(&whole, &x, &gradient, is_solved, &mut rest);
-        self.gather(&whole, system.contact.as_deref(), &gradient);
-        self.put_to_sleep(system, &whole, &x, &v);
+        self.gather(&whole, &gradient, &grip);
+        self.put_to_sleep(system, &whole, &x, &v, &grip);
         self.was_fixed.clone_from(&fixed);
         self.last.clone_from(&start.constraints);
         report.rest.add(&rest);
@@ -349,16 +356,13 @@ impl Resting {
         if wanted.is_empty() {
             return;
         }
+        let n = self.active.len();
+        if (self.n_active + wanted.len()) as f64 > WHOLE * n as f64 {
+            wanted = (0..n as u32).filter(|&i| !self.active[i as usize]).collect();
+        }
         self.patch = None;
         for i in wanted {
             self.activate(i as usize, time);
-        }
-        if self.n_active as f64 > WHOLE * self.active.len() as f64 {
-            (0..self.active.len())
-                .filter(|&i| !self.active[i])
-                .collect::<Vec<_>>()
-                .into_iter()
-                .for_each(|i| self.activate(i, time));
         }
     }
 

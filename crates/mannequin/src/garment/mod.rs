@@ -16,7 +16,8 @@ pub enum Garment {
     /// A dress without sleeves, cut at the waist: `front`, `back`, `skirt-front`, `skirt-back`.
     /// Borders: `hem`, `neck`, `right-armhole`, `left-armhole`.
     Dress,
-    /// A skirt that rests on the hips, its waist too narrow to slide over them: `front`, `back`. Borders: `hem`, `waist`.
+    /// A skirt that rests on the hips, its waist too narrow to slide over them: `front`, `back`.
+    /// Borders: `hem`, `waist`.
     Skirt,
     /// Wide trousers with a waist too narrow to slide over the hips: `front-right`, `front-left`,
     /// `back-right`, `back-left`. Borders: `waist`, `right-hem`, `left-hem`.

@@ -4,7 +4,7 @@ use crate::solver::BlockPattern;
 
 /// The vertices next to every vertex.
 #[derive(Debug)]
-pub(super) struct Neighbours {
+pub(crate) struct Neighbours {
     starts: Vec<u32>,
     list: Vec<u32>,
     /// By vertex, the number of the piece of cloth that it belongs to.
@@ -12,7 +12,7 @@ pub(super) struct Neighbours {
 }
 
 impl Neighbours {
-    pub(super) fn new(pattern: &BlockPattern) -> Neighbours {
+    pub(crate) fn new(pattern: &BlockPattern) -> Neighbours {
         let n = pattern.n_vertices();
         let pairs = pattern.pairs();
         let mut starts = vec![0u32; n + 1];
@@ -50,13 +50,18 @@ impl Neighbours {
         Neighbours { starts, list, pieces }
     }
 
+    /// The vertices next to one.
+    pub(crate) fn of(&self, i: usize) -> &[u32] {
+        &self.list[self.starts[i] as usize..self.starts[i + 1] as usize]
+    }
+
     /// By vertex, the number of the piece of cloth that it belongs to.
-    pub(super) fn pieces(&self) -> &[usize] {
+    pub(crate) fn pieces(&self) -> &[usize] {
         &self.pieces
     }
 
     /// These vertices and all that are at most so many edges away, ascending.
-    pub(super) fn around(&self, of: impl IntoIterator<Item = u32>, rings: usize) -> Vec<u32> {
+    pub(crate) fn around(&self, of: impl IntoIterator<Item = u32>, rings: usize) -> Vec<u32> {
         let mut seen = vec![false; self.starts.len() - 1];
         let mut found: Vec<u32> = Vec::new();
         for i in of {
@@ -69,7 +74,7 @@ impl Neighbours {
             let last = found.len();
             for k in first..last {
                 let i = found[k] as usize;
-                for &j in &self.list[self.starts[i] as usize..self.starts[i + 1] as usize] {
+                for &j in self.of(i) {
                     if !std::mem::replace(&mut seen[j as usize], true) {
                         found.push(j);
                     }
