@@ -1,7 +1,7 @@
 //! What mesh sizes by view do to what the camera sees, as one JSON object.
 //!
 //! ```text
-//! view_quality error SCENE FIRST LAST EVERY HORIZON    distance from adaptive runs, chaos floor, popping
+//! view_quality error SCENE FIRST LAST EVERY HORIZON    distance from adaptive runs, floor, popping
 //! view_quality edges SCENE FRAMES                      mean length of visible edges in every frame
 //! view_quality against SCENE START HORIZON ALONG TRUTH OTHER ...   distance of others from the truth
 //! ```
@@ -64,8 +64,9 @@ fn json5_value(text: &str) -> Outcome<serde_json::Value> {
     Ok(json5::from_str(text)?)
 }
 
-/// Errors over a short horizon: at every start the state of the adaptive run is given to a run with view,
-/// to one with smallest edges longer by a tenth, and to one without remeshing.
+/// Errors of whole runs, compared at every start, and over a short horizon: there the state of the
+/// adaptive run is given to a run with view and to one with smallest edges longer by a tenth, which tells
+/// the floor. What one remeshing moves is the distance from a run without.
 fn error(path: &Path, [first, last, every]: [u64; 3], horizon: u64) -> Outcome<serde_json::Value> {
     let plain = || vec!["view=null".to_owned()];
     let adaptive = scene(path, plain())?;
@@ -79,18 +80,26 @@ fn error(path: &Path, [first, last, every]: [u64; 3], horizon: u64) -> Outcome<s
     let fixed = scene(path, fixed)?;
 
     let mut along = World::new(&adaptive)?;
-    // The run that pops or does not is the one with view, so it is followed as well.
     let mut seen = World::new(&view)?;
-    let (mut errors, mut floors, mut pops, mut pop_floors) = (vec![], vec![], vec![], vec![]);
+    let mut beside = World::new(&other)?;
+    let (mut errors, mut floors) = (vec![], vec![]);
+    let (mut short_errors, mut short_floors) = (vec![], vec![]);
+    let (mut pops, mut pop_floors) = (vec![], vec![]);
     let mut popped = Vec::new();
     for frame in 0..=last {
         if frame >= first && (frame - first) % every == 0 {
             let start = save(&mut along);
             let ahead = |loaded: &Loaded| ahead(loaded, &start, horizon);
+            let eye = Eye::new(&view, along.time());
+            errors.push(eye.rms(&along.cloth, &seen.cloth));
+            floors.push(eye.rms(&along.cloth, &beside.cloth));
             let truth = ahead(&adaptive)?;
             let eye = Eye::new(&view, truth.time());
-            errors.push(eye.rms(&truth.cloth, &ahead(&view)?.cloth));
-            floors.push(eye.rms(&truth.cloth, &ahead(&other)?.cloth));
+            short_errors.push(eye.rms(&truth.cloth, &ahead(&view)?.cloth));
+            short_floors.push(eye.rms(&truth.cloth, &ahead(&other)?.cloth));
+        }
+        if frame < last {
+            beside.advance()?;
         }
         if frame >= first && frame < last {
             // The next frame with its remeshing and without differ by it alone.
@@ -111,13 +120,10 @@ fn error(path: &Path, [first, last, every]: [u64; 3], horizon: u64) -> Outcome<s
             seen.advance()?;
         }
     }
-    let rms = |values: &[f64]| {
-        (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
-    };
     let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     Ok(json!({
-        "error_px": rms(&errors), "floor_px": rms(&floors),
         "errors_px": errors, "floors_px": floors,
+        "short_errors_px": short_errors, "short_floors_px": short_floors,
         "pop_px": most(&pops), "pop_floor_px": most(&pop_floors), "pops": popped,
     }))
 }

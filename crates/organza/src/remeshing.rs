@@ -19,6 +19,10 @@ use std::time::Instant;
 /// would be seen to spring back.
 const HARDLY_STRAINED: [f64; 2] = [0.9, 1.1];
 
+/// The same where a camera decides on sizes (1). Its coarse triangles are many times as large as those
+/// that a fold calls for; springing back from more strain they pull at what shows.
+const UNSEEN_STRAINED: [f64; 2] = [0.98, 1.02];
+
 /// How far off obstacles are followed, in units of the distance that cloth keeps from them (1).
 const OBSTACLE_REACH: f64 = 4.0;
 
@@ -44,6 +48,7 @@ impl Remeshing {
         let mut obstacle_angles = Vec::new();
         let mut max_vertices = 0;
         let (mut aspect_min, mut hysteresis) = (1.0, 0.0);
+        let view = scene.view.as_ref().and_then(|view| Eyes::new(scene, view));
         for (cloth, garment) in scene.cloths.iter().zip(garments) {
             let field = match &cloth.remeshing {
                 None => {
@@ -64,7 +69,10 @@ impl Remeshing {
                     }
                 }
             };
-            let limits = cloth.strain_limits.unwrap_or(HARDLY_STRAINED);
+            let mut limits = cloth.strain_limits.unwrap_or(HARDLY_STRAINED);
+            if view.is_some() {
+                limits = [limits[0].max(UNSEEN_STRAINED[0]), limits[1].min(UNSEEN_STRAINED[1])];
+            }
             stretch_limits.extend(garment.panels.clone().map(|_| limits));
             fields.extend(garment.panels.clone().map(|_| field));
             let angle = cloth.remeshing.as_ref().and_then(|wish| wish.refine_obstacle);
@@ -75,7 +83,7 @@ impl Remeshing {
         let sizing = Box::new(PerPanel { fields });
         let policy = Remeshing {
             sizing,
-            view: scene.view.as_ref().and_then(|view| Eyes::new(scene, view)),
+            view,
             obstacle_angles: obstacle_angles
                 .iter()
                 .any(|a| a.is_finite())

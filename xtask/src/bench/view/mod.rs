@@ -25,6 +25,8 @@ const FIGURES: &[&str] = &[
     "view.overhead_fraction",
     "view.*.pixel_error",
     "view.*.chaos_floor",
+    "view.*.short.pixel_error",
+    "view.*.short.chaos_floor",
     "view.*.pop",
     "view.*.pop_floor",
     "view.distance.edge_px",

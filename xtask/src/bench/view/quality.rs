@@ -30,23 +30,33 @@ pub(super) fn error(context: &Context, report: &mut Report, scene: &Scene) -> Re
         horizon.to_string(),
     ];
     let told = ask(&context.program, &arguments)?;
-    let note = format!(
-        "RMS distance in the picture of the same visible points of the cloth {horizon} frames after \
-         both runs had the same state, over starts from frame {first} to {last}; the spread is from start to start."
+    let whole = format!(
+        "RMS distance in the picture of the same visible points of the cloth, of runs from the start of the \
+         scene, over frames from {first} to {last}; the spread is from frame to frame."
     );
-    let name = |what: &str| format!("view.{}.{what}", scene.name);
-    let value = |key: &str| told[key].as_f64().unwrap_or(f64::NAN);
-    say(format!("  {:.3} px, floor {:.3} px", value("error_px"), value("floor_px")));
-    for (figure, key, other) in [
-        ("pixel_error", "error_px", "view-dependent and adaptive"),
-        ("chaos_floor", "floor_px", "adaptive with smallest edges longer by a tenth and adaptive"),
+    let short = format!(
+        "The same {horizon} frames after both runs had the same state, that of the adaptive run."
+    );
+    let (error, floor) = (
+        "Runs: view-dependent and adaptive.",
+        "Runs: adaptive with smallest edges longer by a tenth, and adaptive.",
+    );
+    for (figure, key, note, runs) in [
+        ("pixel_error", "errors_px", &whole, error),
+        ("chaos_floor", "floors_px", &whole, floor),
+        ("short.pixel_error", "short_errors_px", &short, error),
+        ("short.chaos_floor", "short_floors_px", &short, floor),
     ] {
-        let all = numbers(&told, &format!("{}s_px", &key[..key.len() - 3]));
-        let note = format!("{note} Runs: {other}.");
-        report.add(&name(figure), Figure::rms(&all, "px", &note));
+        let all = numbers(&told, key);
+        let rms = (all.iter().map(|px| px * px).sum::<f64>() / all.len() as f64).sqrt();
+        say(format!("  {figure}: {rms:.3} px"));
+        let note = format!("{note} {runs}");
+        report.add(&format!("view.{}.{figure}", scene.name), Figure::rms(&all, "px", &note));
     }
     let note =
         "Largest distance in the picture that one remeshing moves a visible point of the cloth.";
+    let name = |what: &str| format!("view.{}.{what}", scene.name);
+    let value = |key: &str| told[key].as_f64().unwrap_or(f64::NAN);
     report.add(&name("pop"), Figure::exact(value("pop_px"), "px", note));
     report.add(
         &name("pop_floor"),
