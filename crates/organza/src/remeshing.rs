@@ -194,6 +194,9 @@ fn n_vertices_of(mesh: &Mesh, panels: &[u32]) -> usize {
 mod tests {
     use crate::scene::{LoadOptions, from_sources, parse};
     use crate::world::World;
+    use mesh_core::World3;
+
+    use super::Remeshing;
 
     /// A sheet of 4 vertices that wants many more, beside a fixed one of 121.
     #[test]
@@ -207,5 +210,42 @@ mod tests {
         let report = world.advance().unwrap();
         assert_eq!(report.vertices, 121 + 50);
         assert!(report.remesh.unwrap().limit_reached);
+    }
+
+    /// The largest change of length along the edges of a sheet that was rolled up without strain and then
+    /// remeshed (1), and its triangles.
+    fn rolled(more: &str) -> (f64, usize) {
+        let text = format!(
+            "{{frames: 1, camera: {{position: [0, -3, 0], target: [0, -4, 0]}}, cloths: [
+            {{fabric: 'denim', mesh: {{grid: {{size_m: [0.5, 0.5], cells: [20, 20]}}}},
+              remeshing: {{size_m: {{min: 0.2, max: 0.4}}}}}}]{more}}}"
+        );
+        let loaded = parse(&text, "s", &LoadOptions::default(), &from_sources(&[])).unwrap();
+        let world = World::new(&loaded).unwrap();
+        let mut cloth = world.cloth.clone();
+        const RADIUS: f64 = 0.2;
+        for x in &mut cloth.x {
+            let angle = x.x / RADIUS;
+            *x = World3::new(RADIUS * angle.sin(), x.y, RADIUS * angle.cos());
+        }
+        let policy = Remeshing::new(&loaded.scene, &world.garments, &cloth.mesh).unwrap();
+        policy.run(&mut cloth, 0.0, &[], &[], &[], None).unwrap();
+        let strains = cloth.mesh.triangle_ids().flat_map(|t| {
+            let (u, x) = (cloth.mesh.material()[t.index()], cloth.corners(t));
+            [0, 1, 2].map(|k| {
+                let l = (k + 1) % 3;
+                ((x[l] - x[k]).norm() / (u[l] - u[k]).norm() - 1.0).abs()
+            })
+        });
+        (strains.fold(0.0, f64::max), cloth.mesh.n_triangles())
+    }
+
+    #[test]
+    fn what_a_camera_has_no_need_of_is_coarsened_without_much_strain() {
+        let (strain, triangles) = rolled(", view: {}");
+        assert!(strain < 0.02, "{strain}");
+        assert!(triangles < 800, "{triangles}");
+        let (strain, _) = rolled("");
+        assert!(strain > 0.02, "without a view edits may strain more: {strain}");
     }
 }
