@@ -4,6 +4,7 @@
 //! view_quality error SCENE FIRST LAST EVERY HORIZON    distance from adaptive runs, floor, popping
 //! view_quality edges SCENE FRAMES                      mean length of visible edges in every frame
 //! view_quality against SCENE START HORIZON ALONG TRUTH OTHER ...   distance of others from the truth
+//! view_quality recorded SCENE TRUTH OTHER ...    the same of recordings, mean over all frames
 //! ```
 //!
 //! ALONG, TRUTH and OTHER are settings of the scene, `PATH=VALUE`, with `&&` between two; `-` for none.
@@ -14,7 +15,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use io_mcap::Checkpoint;
+use io_mcap::{Checkpoint, OwnedGarment, Recording};
 use mesh_core::geometry::inverse_edges;
 use mesh_core::{ClothState, Material2, TriangleId, World3};
 use organza::checkpoint::{restore, save};
@@ -35,7 +36,8 @@ fn main() -> Outcome<()> {
         Some("error") => error(scene.as_ref(), [number(2)?, number(3)?, number(4)?], number(5)?)?,
         Some("edges") => edges(scene.as_ref(), number(2)?)?,
         Some("against") => against(scene.as_ref(), [number(2)?, number(3)?], &words[4..])?,
-        _ => return Err("says neither `error` nor `edges` nor `against`".into()),
+        Some("recorded") => recorded(scene.as_ref(), &words[2.min(words.len())..])?,
+        _ => return Err("says neither `error` nor `edges` nor `against` nor `recorded`".into()),
     };
     println!("{told}");
     Ok(())
@@ -176,6 +178,32 @@ fn against(
     Ok(json!({ "errors_px": errors, "garments": moving.len() }))
 }
 
+/// Distances of recordings from the truth: of the same visible points in every frame but the first, RMS
+/// over the area, mean over the frames.
+fn recorded(path: &Path, recordings: &[String]) -> Outcome<serde_json::Value> {
+    let [truth, others @ ..] = recordings else {
+        return Err("an argument is missing; see the head of the source".into());
+    };
+    let loaded = scene(path, Vec::new())?;
+    let open = |path: &String| Recording::open(Path::new(path));
+    let mut truth = open(truth)?;
+    let frames: Vec<u64> = truth.frames().map(|frame| frame.index).filter(|&k| k > 0).collect();
+    let mut errors = Vec::new();
+    for other in others {
+        let mut other = open(other)?;
+        let mut sum = 0.0;
+        for &k in &frames {
+            let (a, b) = (truth.frame(k)?, other.frame(k)?);
+            let eye = Eye::new(&loaded, a.time_s);
+            let garments = a.garments.iter().zip(&b.garments);
+            let all = garments.flat_map(|(a, b)| eye.distances_recorded(a, b)).collect::<Vec<_>>();
+            sum += rms(&all);
+        }
+        errors.push(sum / frames.len() as f64);
+    }
+    Ok(json!({ "errors_px": errors }))
+}
+
 /// Mean length of visible edges in the picture, frame by frame.
 fn edges(path: &Path, frames: u64) -> Outcome<serde_json::Value> {
     let loaded = scene(path, Vec::new())?;
@@ -186,7 +214,7 @@ fn edges(path: &Path, frames: u64) -> Outcome<serde_json::Value> {
         let eye = Eye::new(&loaded, world.time());
         let cloth = &world.cloth;
         let (mut sum, mut n) = (0.0, 0.0);
-        for t in cloth.mesh.triangle_ids().filter(|&t| eye.sees(cloth, t)) {
+        for t in cloth.mesh.triangle_ids().filter(|&t| eye.sees(cloth.corners(t))) {
             let corners = cloth.corners(t).map(|x| eye.picture(x));
             for k in 0..3 {
                 sum += (corners[(k + 1) % 3] - corners[k]).norm();
@@ -220,8 +248,7 @@ impl Eye {
     }
 
     /// Whether a triangle is in the picture and faces the camera.
-    fn sees(&self, cloth: &ClothState, t: TriangleId) -> bool {
-        let corners = cloth.corners(t);
+    fn sees(&self, corners: [World3; 3]) -> bool {
         let [a, b, c] = corners.map(|x| self.frustum.camera_space(x));
         let inside = corners.iter().all(|x| self.frustum.distance(&[*x; 3]) == 0.0);
         inside && (b - a).cross(&(c - a)).dot(&a) <= 0.0
@@ -239,7 +266,7 @@ impl Eye {
         let seen = a
             .mesh
             .triangle_ids()
-            .filter(|&t| counts(a.mesh.panels()[t.index()]) && self.sees(a, t));
+            .filter(|&t| counts(a.mesh.panels()[t.index()]) && self.sees(a.corners(t)));
         seen.filter_map(|t| {
             let corners = a.corners(t);
             let [u, v, w] = a.mesh.material()[t.index()];
@@ -257,12 +284,25 @@ impl Eye {
 
     /// The same, of panels that count.
     fn rms_of(&self, a: &ClothState, b: &ClothState, counts: &dyn Fn(u32) -> bool) -> f64 {
-        let all = self.distances(a, b, counts);
-        let area: f64 = all.iter().map(|(_, area)| area).sum();
-        if area == 0.0 {
-            return 0.0;
-        }
-        (all.iter().map(|(px, area)| px * px * area).sum::<f64>() / area).sqrt()
+        rms(&self.distances(a, b, counts))
+    }
+
+    /// [`Eye::distances`] of a garment in two recordings. The panels of a garment lie side by side.
+    fn distances_recorded(&self, a: &OwnedGarment, b: &OwnedGarment) -> Vec<(f64, f64)> {
+        let corners =
+            |g: &OwnedGarment, t: usize| g.triangles[t].map(|v| World3::from(g.points[v as usize]));
+        let seen = (0..a.triangles.len()).filter(|&t| self.sees(corners(a, t)));
+        seen.filter_map(|t| {
+            let [u, v, w] = a.material[t].map(Material2::from);
+            let middle = (u + v + w) / 3.0;
+            let other = (0..b.triangles.len()).find_map(|o| {
+                interpolate(b.material[o].map(Material2::from), corners(b, o), middle)
+            });
+            let [p, q, r] = corners(a, t);
+            let px = (self.picture((p + q + r) / 3.0) - self.picture(other?)).norm();
+            Some((px, 0.5 * (v - u).perp(&(w - u)).abs()))
+        })
+        .collect()
     }
 
     fn most(&self, a: &ClothState, b: &ClothState) -> f64 {
@@ -286,19 +326,31 @@ impl Lookup {
 
     /// Where a material point of a panel is (m).
     fn at(&self, cloth: &ClothState, panel: u32, u: Material2) -> Option<World3> {
-        self.panels[panel as usize].iter().find_map(|&t| {
-            let corners = cloth.mesh.material()[t.index()];
-            let low = corners[0].inf(&corners[1]).inf(&corners[2]);
-            let high = corners[0].sup(&corners[1]).sup(&corners[2]);
-            if u.x < low.x || u.y < low.y || u.x > high.x || u.y > high.y {
-                return None;
-            }
-            // u = corner 0 + edges · s.
-            let s = inverse_edges(corners) * (u - corners[0]);
-            let weights = [1.0 - s.x - s.y, s.x, s.y];
-            let x = cloth.corners(t);
-            let inside = weights.iter().all(|w| *w >= -1e-9);
-            inside.then(|| x[0] * weights[0] + x[1] * weights[1] + x[2] * weights[2])
-        })
+        self.panels[panel as usize]
+            .iter()
+            .find_map(|&t| interpolate(cloth.mesh.material()[t.index()], cloth.corners(t), u))
     }
+}
+
+/// Where a material point is that is on a triangle with these corners (m).
+fn interpolate(material: [Material2; 3], corners: [World3; 3], u: Material2) -> Option<World3> {
+    let low = material[0].inf(&material[1]).inf(&material[2]);
+    let high = material[0].sup(&material[1]).sup(&material[2]);
+    if u.x < low.x || u.y < low.y || u.x > high.x || u.y > high.y {
+        return None;
+    }
+    // u = corner 0 + edges · s.
+    let s = inverse_edges(material) * (u - material[0]);
+    let weights = [1.0 - s.x - s.y, s.x, s.y];
+    let inside = weights.iter().all(|w| *w >= -1e-9);
+    inside.then(|| corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2])
+}
+
+/// Root of the mean square of distances over areas (px, m²).
+fn rms(all: &[(f64, f64)]) -> f64 {
+    let area: f64 = all.iter().map(|(_, area)| area).sum();
+    if area == 0.0 {
+        return 0.0;
+    }
+    (all.iter().map(|(px, area)| px * px * area).sum::<f64>() / area).sqrt()
 }

@@ -229,7 +229,7 @@ mod tests {
         let report = |x, y, label: &str| {
             let mut report = Report::new(Provenance::default());
             let point = Point { x, y, spread: [y, y], n: 1, label: label.into() };
-            report.points("pareto.a.fixed", Points::errors("a", vec![point], 0.0, ""));
+            report.points("pareto.a.fixed", Points::errors("a", "m", vec![point], 0.0, ""));
             report.add("a.cpu_s", Figure::median(&[1.0], "s", ""));
             report.add("a.stage_s.linear.fixed", Figure::median(&[1e3 * x * x], "s", ""));
             report

@@ -45,12 +45,18 @@ pub(super) struct Points {
 
 impl Points {
     /// Errors and CPU seconds of one method; `scene` is the plot.
-    pub(super) fn errors(scene: &str, points: Vec<Point>, floor: f64, note: &str) -> Points {
+    pub(super) fn errors(
+        scene: &str,
+        unit: &str,
+        points: Vec<Point>,
+        floor: f64,
+        note: &str,
+    ) -> Points {
         Points {
             plot: format!("{scene}: error against CPU time"),
             shape: Shape::Front,
             axes: ["RMS error".into(), "CPU time".into()],
-            units: ["m".into(), "s".into()],
+            units: [unit.to_owned(), "s".into()],
             points,
             floor: Some(floor),
             note: note.to_owned(),
@@ -132,7 +138,7 @@ mod tests {
     #[test]
     fn json_reads_back() {
         let point = Point { x: 0.01, y: 2.0, spread: [1.5, 3.0], n: 3, label: "h 1/8 m".into() };
-        let errors = Points::errors("hang", vec![point.clone(), point], 1e-3, "a \"note\"");
+        let errors = Points::errors("hang", "m", vec![point.clone(), point], 1e-3, "a \"note\"");
         let growth =
             Points::growth("g", ["faces", "time"], ["1", "s"], &[(1.0, 2.0), (10.0, 30.0)], "");
         for points in [errors, growth] {

@@ -1,6 +1,7 @@
 //! Fluid: throughput without restraint, how it grows, and what restraint saves at what error.
 
 use super::example::Example;
+use super::points::{Point as Mark, Points};
 use super::report::{Figure, Report};
 use super::{Benchmark, Context, statistics};
 use crate::command::{Failure, say};
@@ -19,6 +20,10 @@ const FIGURES: &[&str] = &[
     "sph.*.error.*",
     "sph.*.chaos_floor",
     "sph.*.chaos_floor.*",
+    "pareto.block_fall.free",
+    "pareto.block_fall.restrained",
+    "pareto.permanent_flow.free",
+    "pareto.permanent_flow.restrained",
     "sph.view.speedup",
     "sph.view.speedup.*",
     "sph.view.pixel_error",
@@ -228,6 +233,26 @@ fn saving(
         let what = "The largest quotient of an error and the difference of two unrestrained seeds.";
         report.add(&figure("error_over_floor"), Figure::exact(point.over, "1", what));
     }
+    let marks = points.iter().map(|point| Mark {
+        x: point.over,
+        y: 1.0 / point.speedup[1],
+        spread: [1.0 / point.speedup[2], 1.0 / point.speedup[0]],
+        n: 1,
+        label: format!("thresholds of {} m/s", point.threshold),
+    });
+    let note = format!(
+        "Largest quotient of an error and the difference of two unrestrained seeds; CPU time of one thread \
+         over that without restraint, with its spread over half seconds of the scene. {setting}"
+    );
+    let line = |points: Vec<Mark>| Points {
+        axes: ["error over that of another seed".into(), "CPU time over that without".into()],
+        units: ["1".into(), "1".into()],
+        ..Points::errors(scene, "1", points, 1.0, &note)
+    };
+    report.points(&format!("pareto.{name}.restrained"), line(marks.collect()));
+    let label = "another seed, without restraint".into();
+    let free = Mark { x: 1.0, y: 1.0, spread: [1.0; 2], n: 1, label };
+    report.points(&format!("pareto.{name}.free"), line(vec![free]));
     let equal = points.iter().filter(|point| point.over <= EQUAL);
     let best = equal.max_by(|a, b| a.speedup[1].total_cmp(&b.speedup[1]));
     let nearest = points.iter().min_by(|a, b| a.over.total_cmp(&b.over));

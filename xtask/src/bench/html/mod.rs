@@ -223,7 +223,10 @@ mod tests {
             n: 2,
             label: "h < 1/8 & \"fast\"".into(),
         });
-        report.points("pareto.hang.fixed", Points::errors("hang", points.to_vec(), 1e-3, "a < b"));
+        report.points(
+            "pareto.hang.fixed",
+            Points::errors("hang", "m", points.to_vec(), 1e-3, "a < b"),
+        );
         report.add("pareto.hang.floor", Figure::exact(1e-3, "m", "between <two> references"));
         let bad = Cell { text: "a & b".into(), tone: Tone::Bad };
         let rows = vec![vec![Cell::plain("<x>"), bad]];

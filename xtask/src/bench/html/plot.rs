@@ -126,7 +126,7 @@ mod tests {
 
         let point = |x, y| Point { x, y, spread: [y, 1.2 * y], n: 2, label: "<l>".into() };
         let points = vec![point(0.1, 1.0), point(0.01, 9.0), point(0.1, 5.0), point(0.0, 1.0)];
-        let errors = Points::errors("hang", points, 0.005, "");
+        let errors = Points::errors("hang", "m", points, 0.005, "");
         let svg = plot(&[("fixed", &errors), ("adaptive", &errors)]).unwrap();
         assert!(svg.contains("floor 0.005000") && svg.contains("class=\"best\""));
         assert!(svg.contains("1 not positive") && svg.contains("&lt;l&gt;"));

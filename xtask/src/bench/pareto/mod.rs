@@ -11,12 +11,14 @@ use super::report::Report;
 use super::statistics::{front_ratio, mean, median, spread};
 use super::surface::{Surface, World, lattice, rms};
 use super::table::{Cell, Table, Tone};
+use super::view::ask;
 use super::{Benchmark, Context, number, stages};
 use crate::command::{Failure, say};
 use method::{METHODS, Method};
-use scene::{Plan, SCENES, Scene};
-use settings::Setting;
+use scene::{Measure, Plan, SCENES, Scene};
+use settings::{Cut, Setting};
 use std::fs;
+use std::path::{Path, PathBuf};
 
 /// The names of its figures.
 const FIGURES: &[&str] = &[
@@ -29,11 +31,13 @@ const FIGURES: &[&str] = &[
     "pareto.*.fixed",
     "pareto.*.adaptive",
     "pareto.*.view",
+    "pareto.*.restrained",
+    "pareto.*.both",
 ];
 
 pub(super) const BENCHMARK: Benchmark = Benchmark {
     name: "pareto",
-    summary: "error against CPU time as the knobs sweep, on fixed and adaptive meshes",
+    summary: "error against CPU time as the knobs sweep: meshes, sizes by view, restraint, and both",
     figures: FIGURES,
     run,
 };
@@ -50,14 +54,43 @@ fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
 }
 
 /// Where the material points are in each frame but the first.
-type Path = Vec<Vec<World>>;
+type Ways = Vec<Vec<World>>;
+
+/// What errors are measured against.
+enum Truth {
+    /// Material points, and where they are.
+    Points(Vec<[f64; 2]>, Ways),
+    /// The recording of the reference.
+    Recorded(PathBuf),
+}
+
+impl Truth {
+    /// How far a run is off, mean over the frames (m or px).
+    fn error(&self, context: &Context, scene: &Scene, plan: &Plan, run: &Simulation) -> Fallible {
+        match self {
+            Truth::Points(points, truth) => Ok(distance(&ways(context, plan, run, points)?, truth)),
+            Truth::Recorded(truth) => {
+                let file = scene_file(context, scene);
+                let words = ["recorded".into(), text(&file), text(truth), text(&run.out)];
+                let told = ask(&context.program, &words)?;
+                told["errors_px"][0].as_f64().ok_or_else(|| Failure::Unable(told.to_string()))
+            }
+        }
+    }
+}
+
+type Fallible = Result<f64, Failure>;
+
+fn text(path: &Path) -> String {
+    path.display().to_string()
+}
 
 /// One way to run a scene, and what came of it.
 struct Candidate {
     method: &'static Method,
     setting: Setting,
     measured: Vec<Measured>,
-    /// Mean over the frames of the RMS distance from the reference (m).
+    /// Mean over the frames of the RMS distance from the reference (m or px).
     error: f64,
     /// RMS difference of the kinetic energies from those of the reference, over their RMS (1).
     energy_error: f64,
@@ -67,13 +100,25 @@ struct Candidate {
 
 fn sweep(context: &Context, report: &mut Report, scene: &Scene) -> Result<(), Failure> {
     let plan = scene.plan(context.options.quick);
-    let points = lattice([[0.0; 2], scene.size_m], LATTICE);
 
     let [reference, other] = scene.references(plan);
-    let (truth, cost) = follow(context, scene, plan, "reference", &reference, &points)?;
-    let (second, _) = follow(context, scene, plan, "reference", &other, &points)?;
-    let floor = distance(&truth, &second);
-    say(format!("  floor {} m: two references apart", number::short(floor)));
+    let simulation_of =
+        |name: &str, setting: &Setting| simulation(context, scene, plan, name, setting);
+    let first = simulation_of("reference", &reference);
+    let cost = simulate(context, scene, "reference", &reference, &first)?;
+    let truth = match (scene.measure, scene.cut) {
+        (Measure::Points, Cut::Grid(size_m)) => {
+            let points = lattice([[0.0; 2], size_m], LATTICE);
+            let ways = ways(context, plan, &first, &points)?;
+            Truth::Points(points, ways)
+        }
+        _ => Truth::Recorded(first.out.clone()),
+    };
+    let second = simulation_of("other_reference", &other);
+    simulate(context, scene, "reference", &other, &second)?;
+    let floor = truth.error(context, scene, plan, &second)?;
+    let unit = scene.measure.unit();
+    say(format!("  floor {} {unit}: two references apart", number::short(floor)));
 
     let mut candidates: Vec<Candidate> = METHODS
         .iter()
@@ -90,12 +135,14 @@ fn sweep(context: &Context, report: &mut Report, scene: &Scene) -> Result<(), Fa
         .collect();
     for candidate in &mut candidates {
         let Candidate { method, setting, .. } = candidate;
-        match follow(context, scene, plan, method.name, setting, &points) {
-            Ok((path, measured)) => {
-                candidate.error = distance(&path, &truth);
+        let run = simulation_of(method.name, setting);
+        let measured = simulate(context, scene, method.name, setting, &run);
+        match measured.and_then(|m| Ok((truth.error(context, scene, plan, &run)?, m))) {
+            Ok((error, measured)) => {
+                candidate.error = error;
                 candidate.energy_error = energy_error(&measured, &cost);
                 candidate.measured.push(measured);
-                say(format!("    error {} m", number::short(candidate.error)));
+                say(format!("    error {} {unit}", number::short(error)));
             }
             Err(Failure::Unable(why)) => candidate.failure = Some(why),
             Err(failure) => return Err(failure),
@@ -105,8 +152,9 @@ fn sweep(context: &Context, report: &mut Report, scene: &Scene) -> Result<(), Fa
     for _ in 1..context.options.runs() {
         for candidate in candidates.iter_mut().filter(|c| c.failure.is_none()) {
             let Candidate { method, setting, .. } = candidate;
-            let simulation = simulation(context, scene, plan, method.name, setting);
-            candidate.measured.push(context.program.simulate(&simulation)?);
+            candidate
+                .measured
+                .push(context.program.simulate(&simulation_of(method.name, setting))?);
         }
     }
     tell(report, scene, plan, &candidates, floor, &cost);
@@ -121,46 +169,55 @@ fn simulation(
     setting: &Setting,
 ) -> Simulation {
     Simulation {
-        scene: context.root.join(format!("scenes/{}.json5", scene.name)),
+        scene: scene_file(context, scene),
         frames: plan.frames,
         sets: setting.sets.clone(),
         out: context.runs().join(format!("pareto_{}_{method}.mcap", scene.name)),
     }
 }
 
-/// Runs a scene and follows the material points.
-fn follow(
+fn scene_file(context: &Context, scene: &Scene) -> PathBuf {
+    context.root.join(format!("scenes/{}.json5", scene.name))
+}
+
+/// Runs a scene and says what it took.
+fn simulate(
     context: &Context,
     scene: &Scene,
-    plan: &Plan,
     method: &str,
     setting: &Setting,
-    points: &[[f64; 2]],
-) -> Result<(Path, Measured), Failure> {
+    simulation: &Simulation,
+) -> Result<Measured, Failure> {
     say(format!("  {} {method}: {}", scene.name, setting.label));
-    let simulation = simulation(context, scene, plan, method, setting);
-    let measured = context.program.simulate(&simulation)?;
-    say(format!(
-        "    {:.2} CPU seconds, {:.0} faces",
-        measured.cpu_s,
-        measured.info.mean("/faces")
-    ));
-    let folder = simulation.out.with_extension("frames");
-    context.program.export_obj(&simulation.out, plan.frames, &folder)?;
-    let path = (1..=plan.frames)
+    let measured = context.program.simulate(simulation)?;
+    let faces = measured.info.mean("/faces");
+    say(format!("    {:.2} CPU seconds, {faces:.0} faces", measured.cpu_s));
+    Ok(measured)
+}
+
+/// Where material points are in a run.
+fn ways(
+    context: &Context,
+    plan: &Plan,
+    run: &Simulation,
+    points: &[[f64; 2]],
+) -> Result<Ways, Failure> {
+    let folder = run.out.with_extension("frames");
+    context.program.export_obj(&run.out, plan.frames, &folder)?;
+    let ways = (1..=plan.frames)
         .map(|frame| {
             let surface = Surface::read(&folder.join(format!("frame_{frame:05}.obj")))?;
             surface.places(points)
         })
-        .collect::<Result<Path, String>>()
-        .map_err(|why| Failure::Unable(format!("{}, {method}: {why}", scene.name)));
+        .collect::<Result<Ways, String>>()
+        .map_err(|why| Failure::Unable(format!("{}: {why}", text(&run.out))));
     // The recording holds all that is in them.
     let _ = fs::remove_dir_all(&folder);
-    Ok((path?, measured))
+    ways
 }
 
 /// Mean over the frames of the RMS distance of the same material points (m).
-fn distance(one: &Path, other: &Path) -> f64 {
+fn distance(one: &Ways, other: &Ways) -> f64 {
     let each: Vec<f64> = one.iter().zip(other).map(|(a, b)| rms(a, b)).collect();
     mean(&each).unwrap_or(f64::NAN)
 }
@@ -182,9 +239,14 @@ fn tell(
     cost: &Measured,
 ) {
     let name = |what: &str| format!("pareto.{}.{what}", scene.name);
+    let unit = scene.measure.unit();
     let [nx, ny] = LATTICE;
+    let places = match scene.measure {
+        Measure::Points => format!("{nx} × {ny} material points"),
+        Measure::Pixels => "material points in the picture".into(),
+    };
     let note = format!(
-        "RMS distance from a reference of {:.0} faces at the same {nx} × {ny} material points, mean \
+        "RMS distance from a reference of {:.0} faces at the same {places}, mean \
          over frames 1 to {}. {} CPU seconds of the whole process, median of the runs. The floor is \
          the distance of two references, with edges of {} and {} mm: smaller errors cannot be told \
          from those of the reference.",
@@ -194,7 +256,7 @@ fn tell(
         number::short(1e3 * plan.reference.edge_m),
         number::short(1e3 * plan.other_edge_m),
     );
-    report.add(&name("floor"), Figure::exact(floor, "m", &note));
+    report.add(&name("floor"), Figure::exact(floor, unit, &note));
     let whole = "The reference, run once.";
     report.add(&name("reference.cpu_s"), Figure::median(&[cost.cpu_s], "s", whole));
     let peak = cost.peak_mb.and_then(|mb| Figure::exact(mb, "MB", "Peak of resident memory."));
@@ -214,14 +276,14 @@ fn tell(
         // The points of each repetition.
         let run = |k: usize| ours().filter_map(move |c| Some([c.error, c.measured.get(k)?.cpu_s]));
         let pairs: Fronts = (0..points[0].n).map(|k| run(k).collect()).collect();
-        report.points(&name(method.name), Points::errors(scene.name, points, floor, &note));
+        report.points(&name(method.name), Points::errors(scene.name, unit, points, floor, &note));
         let Some(fixed) = &first else {
             first = Some(pairs);
             continue;
         };
         compare(report, &name(&format!("cpu_ratio.{}", method.name)), method, &pairs, fixed);
     }
-    report.table_of(&name("runs"), table(candidates, &note));
+    report.table_of(&name("runs"), table(candidates, unit, &note));
 }
 
 /// Points (error, CPU seconds) of every repetition.
@@ -253,11 +315,12 @@ fn point(candidate: &Candidate) -> Option<Point> {
     Some(Point { x: candidate.error, y, spread, n, label })
 }
 
-fn table(candidates: &[Candidate], note: &str) -> Table {
+fn table(candidates: &[Candidate], unit: &str, note: &str) -> Table {
+    let error = format!("RMS error ({unit})");
     let columns = [
         "method",
         "settings",
-        "RMS error (m)",
+        &error,
         "kinetic energy error",
         "CPU (s)",
         "faces",

@@ -1,13 +1,15 @@
 //! The scenes, how far they are followed, and how fine.
 
-use super::settings::{Level, Setting, fixed_mesh};
+use super::settings::{Cut, Level, Setting};
 
-/// A scene of the project with one cloth made by `grid`.
+/// A scene of the project with one cloth.
 pub(super) struct Scene {
     /// Name of its file, without ending.
     pub(super) name: &'static str,
-    /// Its cloth (m).
-    pub(super) size_m: [f64; 2],
+    /// Its cloth.
+    pub(super) cut: Cut,
+    /// How errors are measured.
+    pub(super) measure: Measure,
     /// Longest edges of adaptive meshes (m).
     pub(super) coarsest_m: f64,
     /// The step that the file asks for.
@@ -16,6 +18,24 @@ pub(super) struct Scene {
     pub(super) note: &'static str,
     quick: Plan,
     full: Plan,
+}
+
+/// What an error is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Measure {
+    /// Distance of the same material points, all over the cloth.
+    Points,
+    /// Their distance in the picture, of those that the camera of the scene sees.
+    Pixels,
+}
+
+impl Measure {
+    pub(super) fn unit(self) -> &'static str {
+        match self {
+            Measure::Points => "m",
+            Measure::Pixels => "px",
+        }
+    }
 }
 
 /// How far a scene is followed, and how fine.
@@ -53,8 +73,10 @@ impl Scene {
                 "newton.tolerance=1e-3",
                 "linear_solver=auto",
                 "linear_tolerance=1e-6",
+                "view=null",
+                "restraint=null",
             ];
-            Setting::of(level, fixed_mesh(self.size_m, edge_m)).with("solved well", &well)
+            Setting::of(level, self.cut.fixed_mesh(edge_m)).with("solved well", &well)
         })
     }
 }
@@ -86,7 +108,8 @@ const ON_A_SPHERE_QUICK: Plan = Plan {
 pub(super) const SCENES: &[Scene] = &[
     Scene {
         name: "hang",
-        size_m: [1.0, 1.0],
+        cut: Cut::Grid([1.0, 1.0]),
+        measure: Measure::Points,
         coarsest_m: 0.5,
         integrator: SDIRK2,
         note: "It is followed down to the bottom of its first swing; later its folds are chaotic.",
@@ -113,7 +136,8 @@ pub(super) const SCENES: &[Scene] = &[
     // Edges go into the 20 mm of the clamp a whole number of times, so that all clamp the same.
     Scene {
         name: "cantilever",
-        size_m: [0.12, 0.03],
+        cut: Cut::Grid([0.12, 0.03]),
+        measure: Measure::Points,
         coarsest_m: 0.02,
         integrator: SDIRK2,
         note: "It bends in a plane; nothing is chaotic.",
@@ -134,7 +158,8 @@ pub(super) const SCENES: &[Scene] = &[
     },
     Scene {
         name: "drape",
-        size_m: [1.0, 1.0],
+        cut: Cut::Grid([1.0, 1.0]),
+        measure: Measure::Points,
         coarsest_m: 0.5,
         integrator: EULER,
         note: "It is followed until it bends over the sphere; how its folds then buckle is chaotic.",
@@ -143,7 +168,8 @@ pub(super) const SCENES: &[Scene] = &[
     },
     Scene {
         name: "flag",
-        size_m: [3.0, 2.0],
+        cut: Cut::Grid([3.0, 2.0]),
+        measure: Measure::Points,
         coarsest_m: 1.0,
         integrator: EULER,
         note: "Flags are chaotic: only the first frames are compared, from rest, as no run can \
@@ -165,7 +191,8 @@ pub(super) const SCENES: &[Scene] = &[
     },
     Scene {
         name: "sphere",
-        size_m: [1.0, 1.0],
+        cut: Cut::Grid([1.0, 1.0]),
+        measure: Measure::Points,
         coarsest_m: 0.5,
         integrator: EULER,
         note: "Cloth struck by a sphere is chaotic: only the first frames are compared, from rest, \
@@ -173,11 +200,56 @@ pub(super) const SCENES: &[Scene] = &[
         quick: ON_A_SPHERE_QUICK,
         full: ON_A_SPHERE,
     },
+    Scene {
+        name: "hanging-cloth",
+        cut: Cut::Grid([1.0, 1.0]),
+        measure: Measure::Points,
+        coarsest_m: 0.5,
+        integrator: EULER,
+        note: "It swings and comes to rest.",
+        quick: Plan {
+            frames: 150,
+            levels: &[level(0.25, 2), level(0.125, 2)],
+            reference: level(1.0 / 12.0, 4),
+            other_edge_m: 0.1,
+            n_turned: 1,
+        },
+        full: Plan {
+            frames: 400,
+            levels: &[level(1.0 / 8.0, 2), level(1.0 / 16.0, 4), level(1.0 / 24.0, 4)],
+            reference: level(1.0 / 36.0, 8),
+            other_edge_m: 1.0 / 32.0,
+            n_turned: 2,
+        },
+    },
+    // Its first second: later two dancers in dresses of different meshes part ways.
+    Scene {
+        name: "dancer",
+        cut: Cut::Garment,
+        measure: Measure::Pixels,
+        coarsest_m: 0.12,
+        integrator: EULER,
+        note: "Pixels of the scene's camera, whose picture is 1280 wide, of cloth that it sees. Cloth that \
+               is worn is chaotic: only her first steps are compared, from rest.",
+        quick: Plan {
+            frames: 12,
+            levels: &[level(0.06, 4), level(0.045, 6)],
+            reference: level(0.03, 8),
+            other_edge_m: 0.034,
+            n_turned: 1,
+        },
+        full: Plan {
+            frames: 25,
+            levels: &[level(0.045, 4), level(0.03, 8), level(0.02, 8)],
+            reference: level(0.0145, 12),
+            other_edge_m: 0.0165,
+            n_turned: 1,
+        },
+    },
 ];
 
 #[cfg(test)]
 mod tests {
-    use super::super::settings::cells;
     use super::*;
 
     #[test]
@@ -190,7 +262,7 @@ mod tests {
                 assert!(plan.other_edge_m < finest.edge_m, "{}", scene.name);
                 assert!(plan.reference.substeps > finest.substeps);
                 let [fine, other] = [plan.reference.edge_m, plan.other_edge_m];
-                assert_ne!(cells(scene.size_m, fine), cells(scene.size_m, other));
+                assert_ne!(scene.cut.mesh(fine), scene.cut.mesh(other));
             }
         }
     }

@@ -1,7 +1,5 @@
 //! One setting of all knobs, as values of a scene.
 
-use super::super::program::fixed_grid;
-
 /// How fine, in space and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Level {
@@ -40,9 +38,31 @@ impl Setting {
     }
 }
 
-/// Values for a mesh of cells with edges of this length that stays as it is.
-pub(super) fn fixed_mesh(size_m: [f64; 2], edge_m: f64) -> Vec<String> {
-    fixed_grid(cells(size_m, edge_m))
+/// What the first cloth of a scene is cut from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Cut {
+    /// A rectangle (m).
+    Grid([f64; 2]),
+    /// The panels of a garment.
+    Garment,
+}
+
+impl Cut {
+    /// Values for a mesh of cells with edges of this length.
+    pub(super) fn mesh(self, edge_m: f64) -> String {
+        match self {
+            Cut::Grid(size_m) => {
+                let [nx, ny] = cells(size_m, edge_m);
+                format!("cloths[0].mesh.grid.cells=[{nx}, {ny}]")
+            }
+            Cut::Garment => format!("cloths[0].mesh.garment.cell_m={edge_m}"),
+        }
+    }
+
+    /// Values for such a mesh that stays as it is.
+    pub(super) fn fixed_mesh(self, edge_m: f64) -> Vec<String> {
+        vec!["cloths[0].remeshing=null".into(), self.mesh(edge_m)]
+    }
 }
 
 /// Cells with edges of about this length.
@@ -57,7 +77,7 @@ mod tests {
     #[test]
     fn settings_say_what_they_are() {
         let level = Level { edge_m: 0.0025, substeps: 8 };
-        let setting = Setting::of(level, fixed_mesh([0.12, 0.03], 0.0025));
+        let setting = Setting::of(level, Cut::Grid([0.12, 0.03]).fixed_mesh(0.0025));
         let setting = setting.with("one", &["newton.max_iterations=1"]);
         assert_eq!(setting.label, "2.5 mm, 8 steps, one");
         assert_eq!(

@@ -110,7 +110,7 @@ fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
 }
 
 /// Asks the program that measures pictures.
-fn ask(program: &Program, arguments: &[String]) -> Result<Value, Failure> {
+pub(super) fn ask(program: &Program, arguments: &[String]) -> Result<Value, Failure> {
     let told = program.example("view_quality", arguments)?;
     serde_json::from_str(&told).map_err(|e| Failure::Unable(format!("view_quality: {e}")))
 }
