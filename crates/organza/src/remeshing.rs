@@ -7,7 +7,7 @@ use crate::obstacle::Obstacle;
 use crate::obstacle_sizing;
 use crate::report::ViewSummary;
 use crate::scene::Scene;
-use mesh_core::{ClothState, Mesh};
+use mesh_core::{ClothState, Material2, Mesh};
 use remesh::{
     CornerMetrics, PerPanel, PhysicalSizing, RemeshError, RemeshReport, RemeshSettings,
     SizingField, adapt,
@@ -23,6 +23,10 @@ const HARDLY_STRAINED: [f64; 2] = [0.9, 1.1];
 /// that a fold calls for; springing back from more strain they pull at what shows.
 const UNSEEN_STRAINED: [f64; 2] = [0.98, 1.02];
 
+/// How long edges may get that no camera needs, in mean widths of their panel (1). Longer ones lie across
+/// the leg or the arm in it, and are caught where these move.
+const SHARE_OF_PANEL: f64 = 0.5;
+
 /// How far off obstacles are followed, in units of the distance that cloth keeps from them (1).
 const OBSTACLE_REACH: f64 = 4.0;
 
@@ -30,6 +34,8 @@ const OBSTACLE_REACH: f64 = 4.0;
 pub struct Remeshing {
     sizing: Box<dyn SizingField>,
     view: Option<Eyes>,
+    /// How long edges may get that no camera needs, by panel (m); empty without a view.
+    unseen_max: Vec<f64>,
     /// What obstacles may turn across an edge, by panel (rad); absent where it is nowhere bounded.
     obstacle_angles: Option<Vec<f64>>,
     fixed_panels: Vec<u32>,
@@ -80,10 +86,17 @@ impl Remeshing {
         }
         // The limit is one for the whole mesh, of which fixed cloths have their part already.
         max_vertices += n_vertices_of(mesh, &fixed_panels);
+        let mut unseen_max = Vec::new();
+        if view.is_some() {
+            let longest = |panel: usize| fields[panel].size_max;
+            let widths = mean_widths(mesh).into_iter().enumerate();
+            unseen_max.extend(widths.map(|(p, width)| longest(p).max(SHARE_OF_PANEL * width)));
+        }
         let sizing = Box::new(PerPanel { fields });
         let policy = Remeshing {
             sizing,
             view,
+            unseen_max,
             obstacle_angles: obstacle_angles
                 .iter()
                 .any(|a| a.is_finite())
@@ -155,7 +168,8 @@ impl Remeshing {
         let mut metrics = match &factors {
             None => CornerMetrics::evaluate(cloth, &*self.sizing, &settings)?,
             Some(factors) => {
-                CornerMetrics::evaluate(cloth, &ViewSizing::new(&*self.sizing, factors), &settings)?
+                let field = ViewSizing::new(&*self.sizing, factors).with_limits(&self.unseen_max);
+                CornerMetrics::evaluate(cloth, &field, &settings)?
             }
         };
         let sizing_s = obstacle_s + lap();
@@ -177,6 +191,21 @@ pub struct Remeshed {
     pub sizing_s: f64,
     /// Time spent on edits (s).
     pub edits_s: f64,
+}
+
+/// Area over longest side of every panel (m).
+fn mean_widths(mesh: &Mesh) -> Vec<f64> {
+    let n = mesh.panels().iter().max().map_or(0, |panel| *panel as usize + 1);
+    let none = Material2::repeat(f64::INFINITY);
+    let mut extents = vec![(none, -none, 0.0); n];
+    for t in mesh.triangle_ids() {
+        let (low, high, area) = &mut extents[mesh.panels()[t.index()] as usize];
+        *area += mesh.area(t);
+        for u in &mesh.material()[t.index()] {
+            (*low, *high) = (low.inf(u), high.sup(u));
+        }
+    }
+    extents.into_iter().map(|(low, high, area)| area / (high - low).max()).collect()
 }
 
 /// Number of vertices on some panels, given in rising order.
@@ -247,5 +276,23 @@ mod tests {
         assert!(triangles < 800, "{triangles}");
         let (strain, _) = rolled("");
         assert!(strain > 0.02, "without a view edits may strain more: {strain}");
+    }
+
+    #[test]
+    fn edges_out_of_the_picture_are_shorter_than_their_panel_is_wide() {
+        let text = "{frames: 12, substeps: 1, gravity: [0, 0, 0],
+            camera: {position: [0, -3, 0], target: [0, -4, 0]}, view: {size_max_m: 2}, cloths: [
+            {fabric: 'denim', mesh: {grid: {size_m: [0.3, 1.2], cells: [8, 32]}},
+             remeshing: {size_m: {min: 0.02, max: 0.05}}}]}";
+        let loaded = parse(text, "s", &LoadOptions::default(), &from_sources(&[])).unwrap();
+        let mut world = World::new(&loaded).unwrap();
+        for _ in 0..6 {
+            world.advance().unwrap();
+        }
+        let mesh = &world.cloth.mesh;
+        let longest =
+            mesh.material().iter().flat_map(|u| [0, 1, 2].map(|k| (u[(k + 1) % 3] - u[k]).norm()));
+        let longest = longest.fold(0.0, f64::max);
+        assert!(longest > 0.1 && longest <= 0.15 * (1.0 + 1e-12), "{longest}");
     }
 }

@@ -16,12 +16,20 @@ use remesh::{Metric, SizingContext, SizingField};
 pub struct ViewSizing<'a, S> {
     field: S,
     factors: &'a ViewFactors,
+    coarsest: &'a [f64],
 }
 
 impl<'a, S: SizingField> ViewSizing<'a, S> {
     /// The field as seen with these view factors.
     pub fn new(field: S, factors: &'a ViewFactors) -> ViewSizing<'a, S> {
-        ViewSizing { field, factors }
+        ViewSizing { field, factors, coarsest: &[] }
+    }
+
+    /// The same with a limit of its own for every panel, beside the settings' `size_max`: coarsening
+    /// makes no edge longer than this (m), by the panel's index. Panels beyond the slice have none.
+    #[must_use]
+    pub fn with_limits(self, coarsest: &'a [f64]) -> ViewSizing<'a, S> {
+        ViewSizing { coarsest, ..self }
     }
 }
 
@@ -36,7 +44,9 @@ impl<S: SizingField> SizingField for ViewSizing<'_, S> {
         let wanted = self.field.metric(context, at);
         let settings = self.factors.settings();
         // The field's own wish for coarseness goes before ours against it.
-        let coarsest = settings.size_max.max(1.0 / wanted.eigenvalues()[1].max(0.0).sqrt());
+        let of_panel = self.coarsest.get(mesh.panels()[at.index()] as usize);
+        let limit = of_panel.map_or(settings.size_max, |limit| limit.min(settings.size_max));
+        let coarsest = limit.max(1.0 / wanted.eigenvalues()[1].max(0.0).sqrt());
         let (mut seen, mut n) = (Metric::ZERO, 0);
         for (factor, finest) in self.factors.wishes(at) {
             let metric = bounded(wanted * (factor * factor), finest);
