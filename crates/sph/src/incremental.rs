@@ -47,8 +47,10 @@ const FORCE_COST: f64 = 2.5;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Changes {
     /// Positions and P, effective velocities and ρ as the accelerations have them.
-    x: Vec<Point>,
+    pub(crate) x: Vec<Point>,
     w: Vec<Point>,
+    /// Particles, and particles of walls, that a particle has left that is gone.
+    pub(crate) left: [Vec<u32>; 2],
     /// P of the touched walls as the accelerations have it.
     wall_terms: Vec<f64>,
     /// The same marks and lists for the walls: another density, another pressure.
@@ -95,6 +97,8 @@ pub(crate) struct Update<'a> {
     pub(crate) gravity: [f64; 3],
     /// Whether to leave it to a sweep where that costs less.
     pub(crate) may_leave: bool,
+    /// Whether there are new or removed particles: then there is nothing to take away or to add to.
+    pub(crate) all_anew: bool,
     pub(crate) changes: &'a mut Changes,
 }
 
@@ -159,8 +163,11 @@ impl Update<'_> {
     /// compute their densities anew than to look at the pairs of the movers: where movers are close
     /// together. Returns the number of their pairs.
     fn touched_by_movers(&mut self) -> Option<u64> {
-        let Changes { marks, touched, wall_marks, touched_walls, .. } = &mut *self.changes;
-        let most = (DENSITY_COST * self.movers.len() as f64) as usize;
+        let Changes { marks, touched, wall_marks, touched_walls, left, .. } = &mut *self.changes;
+        let most = match self.all_anew {
+            true => usize::MAX,
+            false => (DENSITY_COST * self.movers.len() as f64) as usize,
+        };
         let (n_before, n_walls_before) = (touched.len(), touched_walls.len());
         for &mover in self.movers {
             touch(self.neighbours.candidates(mover as usize), TOUCHED, marks, touched);
@@ -171,6 +178,10 @@ impl Update<'_> {
                 touched_walls.drain(n_walls_before..).for_each(|i| wall_marks[i as usize] = 0);
                 return None;
             }
+        }
+        if self.all_anew {
+            touch(&left[0], TOUCHED, marks, touched);
+            touch(&left[1], TOUCHED, wall_marks, touched_walls);
         }
         Some(pairs_of(touched, self.neighbours))
     }
@@ -187,13 +198,16 @@ impl Update<'_> {
     /// The same for accelerations: marks all that may have another one, if computing theirs anew is
     /// cheaper.
     fn touched_by_changes(&mut self) -> Option<u64> {
-        let Changes { marks, changed, changed_walls, stale, .. } = &mut *self.changes;
+        let Changes { marks, changed, changed_walls, stale, left, .. } = &mut *self.changes;
         if changed.len() as f64 > MOST_CHANGED * marks.len() as f64 {
             stale.extend(0..marks.len() as u32);
             marks.iter_mut().for_each(|mark| *mark |= STALE);
             return Some(self.neighbours.n_pairs() as u64);
         }
-        let most = (FORCE_COST * changed.len() as f64) as usize;
+        let most = match self.all_anew {
+            true => usize::MAX,
+            false => (FORCE_COST * changed.len() as f64) as usize,
+        };
         for &here in changed.iter() {
             touch(&[here], STALE, marks, stale);
             touch(self.neighbours.candidates(here as usize), STALE, marks, stale);
@@ -201,6 +215,9 @@ impl Update<'_> {
                 stale.drain(..).for_each(|i| marks[i as usize] &= !STALE);
                 return None;
             }
+        }
+        if self.all_anew {
+            touch(&left[0], STALE, marks, stale);
         }
         for &wall in changed_walls.iter() {
             touch(self.neighbours.fluid_candidates(wall as usize), STALE, marks, stale);
@@ -468,6 +485,24 @@ impl Changes {
     /// True if what was computed is known here.
     pub(crate) fn is_known(&self, n_particles: usize) -> bool {
         self.x.len() == n_particles
+    }
+
+    /// A particle is gone; the last one gets its place.
+    pub(crate) fn swap_remove(&mut self, i: usize) {
+        self.x.swap_remove(i);
+        self.w.swap_remove(i);
+    }
+
+    /// There is a new particle, the last one, for which nothing has been computed.
+    pub(crate) fn push(&mut self, x: &Point, w: &Point) {
+        self.x.push(*x);
+        self.w.push(*w);
+    }
+
+    /// Fluid may touch more of the walls than before; nothing has been computed for these.
+    pub(crate) fn know_walls(&mut self, walls: &WallState) {
+        let new = &walls.x[self.wall_terms.len()..];
+        self.wall_terms.extend(new.iter().map(|x| x[3]));
     }
 
     /// Takes over what has been computed, and removes the marks.

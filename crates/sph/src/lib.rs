@@ -60,13 +60,17 @@
 //!   of [`Fluid::energy`].
 #![forbid(unsafe_code)]
 
+mod cells;
 mod checkpoint;
 mod fluid;
 mod grid;
 mod incremental;
 mod kernel;
 mod lanes;
+mod listing;
+mod lists;
 pub mod measure;
+mod mend;
 mod motion;
 mod neighbours;
 mod pair;

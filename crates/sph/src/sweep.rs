@@ -6,7 +6,8 @@
 use crate::grid::Point;
 use crate::kernel::CubicSpline;
 use crate::lanes::{self, Four, LANES};
-use crate::neighbours::{BLOCK, Block, Lists, Neighbours};
+use crate::lists::Lists;
+use crate::neighbours::{BLOCK, Block, Neighbours};
 use crate::pair::{Laws, Side, transpose};
 use crate::walls::WallState;
 use mesh_core::par;
