@@ -364,7 +364,9 @@ impl<R: Restraint> Fluid<R> {
     pub(crate) fn evaluate_all(&mut self, seconds: &mut Seconds) {
         let clock = Instant::now();
         let State { x, w, a, density, by_sheets, .. } = &mut self.state;
-        sweep::densities(&self.laws, x, &mut self.touched, &mut self.neighbours, density, None);
+        let (laws, neighbours) = (&self.laws, &mut self.neighbours);
+        sweep::densities(laws, x, &self.touched, neighbours, density, None);
+        sweep::wall_densities(laws, x, &mut self.touched, neighbours, None);
         for ((x, w), &density) in x.iter_mut().zip(w.iter_mut()).zip(density.iter()) {
             x[3] = self.laws.pressure_term(density);
             w[3] = density;

@@ -29,6 +29,8 @@ const TOUCHED: u8 = 4;
 const CHANGED: u8 = 8;
 /// Has another acceleration.
 const STALE: u8 = 16;
+/// Has another density, but has not moved.
+const NEAR: u8 = 32;
 
 /// The part of the particles from which on it is not worth looking for those that no change has
 /// reached (1).
@@ -113,12 +115,11 @@ impl Update<'_> {
             self.changes.clear_marks();
             return None;
         }
-        let density_pairs = match self.touched_by_movers() {
-            Some(pairs) => self.densities_anew(pairs),
-            None => lanes::run(DensityChanges(&mut self)),
-        };
+        let by_sums = self.touched_by_movers();
+        let density_pairs =
+            if by_sums { self.densities_anew() } else { lanes::run(DensityChanges(&mut self)) };
         self.pressures();
-        let force_pairs = match self.touched_by_changes() {
+        let force_pairs = match self.touched_by_changes(by_sums) {
             Some(pairs) => self.accelerations_anew(pairs),
             None => lanes::run(ForceChanges(&mut self)),
         };
@@ -151,7 +152,7 @@ impl Update<'_> {
             marks[i as usize] = MOVED | TURNED | TOUCHED | CHANGED;
         }
         touched.extend_from_slice(self.movers);
-        touch(self.by_sheets, TOUCHED, marks, touched);
+        touch(self.by_sheets, TOUCHED | NEAR, marks, touched);
         for &i in self.stopped {
             marks[i as usize] = TURNED | CHANGED;
         }
@@ -159,46 +160,73 @@ impl Update<'_> {
         changed.extend_from_slice(self.stopped);
     }
 
-    /// Marks all particles that may have another density, if these are so few that it is cheaper to
-    /// compute their densities anew than to look at the pairs of the movers: where movers are close
-    /// together. Returns the number of their pairs.
-    fn touched_by_movers(&mut self) -> Option<u64> {
-        let Changes { marks, touched, wall_marks, touched_walls, left, .. } = &mut *self.changes;
+    /// Marks the particles that were within the support of a mover before the step, if these are so few
+    /// that it is cheaper to compute their densities anew than to look at the pairs of the movers: where
+    /// movers are close together. Returns false, and marks none, otherwise.
+    fn touched_by_movers(&mut self) -> bool {
+        let Changes { x: old_x, marks, touched, wall_marks, touched_walls, left, .. } =
+            &mut *self.changes;
         let most = match self.all_anew {
             true => usize::MAX,
             false => (DENSITY_COST * self.movers.len() as f64) as usize,
         };
         let (n_before, n_walls_before) = (touched.len(), touched_walls.len());
         for &mover in self.movers {
-            touch(self.neighbours.candidates(mover as usize), TOUCHED, marks, touched);
-            let walls = self.neighbours.wall_candidates(mover as usize);
-            touch(walls, TOUCHED, wall_marks, touched_walls);
+            self.neighbours.within(
+                mover as usize,
+                old_x,
+                self.walls,
+                self.laws.kernel.support().powi(2),
+                [
+                    &mut |near| touch(near, TOUCHED | NEAR, marks, touched),
+                    &mut |near| touch(near, TOUCHED, wall_marks, touched_walls),
+                ],
+            );
             if touched.len() > most {
-                touched.drain(n_before..).for_each(|i| marks[i as usize] &= !TOUCHED);
+                touched.drain(n_before..).for_each(|i| marks[i as usize] &= !(TOUCHED | NEAR));
                 touched_walls.drain(n_walls_before..).for_each(|i| wall_marks[i as usize] = 0);
-                return None;
+                return false;
             }
         }
         if self.all_anew {
-            touch(&left[0], TOUCHED, marks, touched);
+            touch(&left[0], TOUCHED | NEAR, marks, touched);
             touch(&left[1], TOUCHED, wall_marks, touched_walls);
         }
-        Some(pairs_of(touched, self.neighbours))
+        true
     }
 
-    /// Computes the densities of what is touched anew.
-    fn densities_anew(&mut self, n_pairs: u64) -> u64 {
-        let Changes { marks, wall_marks, .. } = &*self.changes;
-        let only = [marks, wall_marks].map(|marks| Marked { marks, bits: TOUCHED });
+    /// Computes the densities of what is touched anew: of the movers first, which finds whom they are near
+    /// to now. Returns the number of pairs.
+    fn densities_anew(&mut self) -> u64 {
+        let Changes { marks, touched, wall_marks, touched_walls, .. } = &mut *self.changes;
         let State { x, density, .. } = &mut *self.state;
-        sweep::densities(self.laws, x, self.walls, self.neighbours, density, Some(only));
-        n_pairs
+        let (laws, walls, neighbours) = (self.laws, &mut *self.walls, &mut *self.neighbours);
+        let only = Some(Marked { marks, bits: MOVED });
+        sweep::densities(laws, x, walls, neighbours, density, only);
+        for &mover in self.movers {
+            neighbours.within(
+                mover as usize,
+                x,
+                walls,
+                laws.kernel.support().powi(2),
+                [
+                    &mut |near| touch(near, TOUCHED | NEAR, marks, touched),
+                    &mut |near| touch(near, TOUCHED, wall_marks, touched_walls),
+                ],
+            );
+        }
+        let only = Some(Marked { marks, bits: NEAR });
+        sweep::densities(laws, x, walls, neighbours, density, only);
+        let only = Some(Marked { marks: wall_marks, bits: TOUCHED });
+        sweep::wall_densities(laws, x, walls, neighbours, only);
+        pairs_of(touched, neighbours)
     }
 
     /// The same for accelerations: marks all that may have another one, if computing theirs anew is
-    /// cheaper.
-    fn touched_by_changes(&mut self) -> Option<u64> {
-        let Changes { marks, changed, changed_walls, stale, left, .. } = &mut *self.changes;
+    /// cheaper. Where densities were computed `by_sums`, what is touched is all that movers are or were
+    /// near to.
+    fn touched_by_changes(&mut self, by_sums: bool) -> Option<u64> {
+        let Changes { marks, touched, changed, changed_walls, stale, .. } = &mut *self.changes;
         if changed.len() as f64 > MOST_CHANGED * marks.len() as f64 {
             stale.extend(0..marks.len() as u32);
             marks.iter_mut().for_each(|mark| *mark |= STALE);
@@ -208,19 +236,33 @@ impl Update<'_> {
             true => usize::MAX,
             false => (FORCE_COST * changed.len() as f64) as usize,
         };
+        if by_sums {
+            touch(touched, STALE, marks, stale);
+        }
         for &here in changed.iter() {
             touch(&[here], STALE, marks, stale);
-            touch(self.neighbours.candidates(here as usize), STALE, marks, stale);
+            if by_sums && marks[here as usize] & MOVED == 0 {
+                self.neighbours.within(
+                    here as usize,
+                    &self.state.x,
+                    self.walls,
+                    self.laws.kernel.support().powi(2),
+                    [&mut |near| touch(near, STALE, marks, stale), &mut |_| ()],
+                );
+            } else if !by_sums {
+                touch(self.neighbours.candidates(here as usize), STALE, marks, stale);
+            }
             if stale.len() > most {
                 stale.drain(..).for_each(|i| marks[i as usize] &= !STALE);
                 return None;
             }
         }
-        if self.all_anew {
-            touch(&left[0], STALE, marks, stale);
-        }
         for &wall in changed_walls.iter() {
-            touch(self.neighbours.fluid_candidates(wall as usize), STALE, marks, stale);
+            let near = match by_sums {
+                true => self.neighbours.fluid_within(wall as usize),
+                false => self.neighbours.fluid_candidates(wall as usize),
+            };
+            touch(near, STALE, marks, stale);
         }
         Some(pairs_of(stale, self.neighbours))
     }
@@ -427,13 +469,13 @@ impl Update<'_> {
     }
 }
 
-/// Marks particles and lists those that are new.
+/// Marks particles that have none of these marks, and lists them.
 #[inline(always)]
-fn touch(which: &[u32], bit: u8, marks: &mut [u8], list: &mut Vec<u32>) {
+fn touch(which: &[u32], bits: u8, marks: &mut [u8], list: &mut Vec<u32>) {
     for &j in which {
         let mark = &mut marks[j as usize];
-        if *mark & bit == 0 {
-            *mark |= bit;
+        if *mark & bits == 0 {
+            *mark |= bits;
             list.push(j);
         }
     }

@@ -17,6 +17,8 @@ pub(crate) struct Lists {
     /// How many candidates of each particle are within the support, padded to whole lanes, and which;
     /// every particle has room for all its candidates, so that any of them can be looked at alone.
     n_active: Vec<u32>,
+    /// The same without padding.
+    n_within: Vec<u32>,
     active: Vec<u32>,
     /// Squared distances in a row of cells.
     squared: Vec<f64>,
@@ -54,6 +56,13 @@ impl Lists {
         let begin = self.room_of(k);
         let range = begin..begin + self.n_active[k] as usize;
         (&self.active[range.clone()], &self.slope[range])
+    }
+
+    /// Neighbours of particle `k` within the support.
+    #[inline(always)]
+    pub(crate) fn within(&self, k: usize) -> &[u32] {
+        let begin = self.room_of(k);
+        &self.active[begin..begin + self.n_within[k] as usize]
     }
 
     /// Where the room of particle `k` for active candidates begins.
@@ -105,6 +114,7 @@ impl Lists {
         self.active.resize(room, 0);
         self.slope.resize(room, 0.0);
         self.n_active.resize(n_particles, 0);
+        self.n_within.resize(n_particles, 0);
     }
 
     /// Finds the candidates of particle `k`, which is at `p`, that are within the support, and leaves
@@ -133,6 +143,7 @@ impl Lists {
             r_squared[n] = squared;
             n += usize::from(squared < support_squared);
         }
+        self.n_within[k] = n as u32;
         while n % LANES != 0 {
             active[n] = filler;
             r_squared[n] = 2.25 * support_squared;

@@ -7,6 +7,7 @@ use crate::grid::{Columns, Grid, Point};
 use crate::cells::Cells;
 use crate::lanes;
 use crate::lists::Lists;
+use crate::place::squared_distance;
 use crate::mend::{Mending, Surroundings};
 use crate::walls::{WallState, Walls};
 use mesh_core::par;
@@ -173,7 +174,39 @@ impl Neighbours {
         self.blocks[i / BLOCK].fluid.candidates(i % BLOCK)
     }
 
-    /// The distances of particle `i` from others have changed, but its active candidates have not.
+    /// Adds to `found` the candidates of particle `i` in the fluid, and those in the walls, that are within
+    /// the support if all are at `x`: as they were when the active candidates were found, where these are
+    /// known.
+    pub(crate) fn within(
+        &self,
+        i: usize,
+        x: &[Point],
+        walls: &WallState,
+        support_squared: f64,
+        [fluid, wall]: [&mut dyn FnMut(&[u32]); 2],
+    ) {
+        let (block, k) = (&self.blocks[i / BLOCK], i % BLOCK);
+        if block.is_fresh[k] {
+            fluid(block.fluid.within(k));
+            wall(block.wall.within(k));
+            return;
+        }
+        let p = &x[i];
+        let each = |candidates: &[u32], points: &[Point], found: &mut dyn FnMut(&[u32])| {
+            let near = |j: &&u32| squared_distance(p, &points[**j as usize]) < support_squared;
+            candidates.iter().filter(near).for_each(|j| found(&[*j]));
+        };
+        each(block.fluid.candidates(k), x, fluid);
+        each(block.wall.candidates(k), &walls.x, wall);
+    }
+
+    /// Fluid within the support of particle `i` of the touched walls when its density was found last.
+    #[inline(always)]
+    pub(crate) fn fluid_within(&self, i: usize) -> &[u32] {
+        self.wall_blocks[i / BLOCK].within(i % BLOCK)
+    }
+
+    /// The distances of particle `i` from others have changed.
     #[inline(always)]
     pub(crate) fn outdate(&mut self, i: usize) {
         self.blocks[i / BLOCK].is_fresh[i % BLOCK] = false;

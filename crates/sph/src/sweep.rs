@@ -27,22 +27,30 @@ impl Marked<'_> {
     }
 }
 
-/// Densities (kg/m³) of the particles of the fluid, into `density`, and of the walls that it touches;
-/// finds the neighbours within the support. `only` are the particles and walls to look at, if not all.
+/// Densities (kg/m³) of the particles of the fluid, into `density`; finds the neighbours within the
+/// support. `only` are the particles to look at, if not all.
 pub(crate) fn densities(
+    laws: &Laws,
+    x: &[Point],
+    walls: &WallState,
+    neighbours: &mut Neighbours,
+    density: &mut [f64],
+    only: Option<Marked<'_>>,
+) {
+    par::blocks(&mut neighbours.blocks, density, BLOCK, |b, block, density| {
+        let first = b * BLOCK;
+        lanes::run(Densities { laws, x, walls, first, block, density, only });
+    });
+}
+
+/// The same for the walls that fluid touches.
+pub(crate) fn wall_densities(
     laws: &Laws,
     x: &[Point],
     walls: &mut WallState,
     neighbours: &mut Neighbours,
-    density: &mut [f64],
-    only: Option<[Marked<'_>; 2]>,
+    only: Option<Marked<'_>>,
 ) {
-    let [only, only_walls] = [0, 1].map(|k| only.map(|both| both[k]));
-    let seen = &*walls;
-    par::blocks(&mut neighbours.blocks, density, BLOCK, |b, block, density| {
-        let first = b * BLOCK;
-        lanes::run(Densities { laws, x, walls: seen, first, block, density, only });
-    });
     let WallState { x: places, own, density, .. } = walls;
     par::blocks(&mut neighbours.wall_blocks, density, BLOCK, |b, lists, density| {
         lanes::run(WallDensities {
@@ -53,7 +61,7 @@ pub(crate) fn densities(
             first: b * BLOCK,
             lists,
             density,
-            only: only_walls,
+            only,
         });
     });
 }
