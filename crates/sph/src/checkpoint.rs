@@ -2,6 +2,7 @@
 //! stopped.
 
 use crate::fluid::Fluid;
+use crate::incremental::Overdue;
 use crate::settings::FluidError;
 use arps::Restraint;
 use serde::{Deserialize, Serialize};
@@ -42,6 +43,11 @@ pub struct Checkpoint {
     pub greatest: [f64; 3],
     /// Layers that each nozzle has let out.
     pub layers: Vec<u64>,
+    /// Steps since particles at rest got their accelerations.
+    pub age: u32,
+    /// What has changed since then: numbers of particles with movers near them, of particles with another
+    /// pressure, and of `walls` with another pressure.
+    pub overdue: [Vec<u32>; 3],
     /// True if the next step may begin from what this one has computed.
     pub incremental: bool,
 }
@@ -68,6 +74,8 @@ impl<R: Restraint> Fluid<R> {
             mended: self.neighbours.n_mended,
             greatest: [self.fastest, self.hardest, self.farthest],
             layers: self.emitters.iter().map(|emitter| emitter.n_layers).collect(),
+            age: changes.overdue.age,
+            overdue: changes.overdue.lists.clone(),
             incremental: changes.is_known(state.len()),
         }
     }
@@ -107,6 +115,11 @@ impl<R: Restraint> Fluid<R> {
                     let (x, y, z) = (x[0], x[1], x[2]);
                     return Err(FluidError::Escaped { id: *id, x, y, z, speed });
                 }
+            }
+        }
+        for (list, n) in from.overdue.iter().zip([n, n, from.walls.len()]) {
+            if let Some(&i) = list.iter().find(|&&i| i as usize >= n) {
+                check("particles whose accelerations are overdue", i as usize + 1, n)?;
             }
         }
         check("particles of walls", from.touched.len(), from.walls.len())?;
@@ -151,6 +164,7 @@ impl<R: Restraint> Fluid<R> {
         let changes = &mut self.scratch.changes;
         if from.incremental {
             changes.evaluated_all(&self.state, &self.touched);
+            changes.overdue = Overdue { age: from.age, lists: from.overdue.clone() };
         } else {
             changes.forget();
         }

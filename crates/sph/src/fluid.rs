@@ -349,6 +349,7 @@ impl<R: Restraint> Fluid<R> {
             tolerance: settings.pressure_tolerance,
             gravity: self.settings.gravity.into(),
             may_leave: settings.sweep_above < 1.0,
+            force_interval: settings.force_interval,
             all_anew: report.emitted + report.drained > 0,
             changes,
         };
@@ -392,6 +393,8 @@ impl<R: Restraint> Fluid<R> {
             } else {
                 self.scratch.changes.forget();
             }
+        } else {
+            self.scratch.changes.forget();
         }
         seconds.force += clock.elapsed().as_secs_f64();
     }

@@ -11,6 +11,7 @@
 
 use crate::grid::Point;
 use crate::lanes::{self, Four, LANES};
+use crate::mend::rename;
 use crate::neighbours::Neighbours;
 use crate::pair::{Laws, Side, transpose};
 use crate::place::{Place, named, pick, squared_distance};
@@ -67,6 +68,29 @@ pub(crate) struct Changes {
     near: Vec<u32>,
     /// Particles whose accelerations are stale.
     stale: Vec<u32>,
+    pub(crate) overdue: Overdue,
+}
+
+/// What has changed since the accelerations of particles that rest were computed last.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Overdue {
+    /// Steps since then.
+    pub(crate) age: u32,
+    /// Particles that have been within the support of a mover, particles with another pressure, and
+    /// particles of walls with another pressure; some several times.
+    pub(crate) lists: [Vec<u32>; 3],
+}
+
+impl Overdue {
+    /// True if there is nothing.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.lists.iter().all(Vec::is_empty)
+    }
+
+    fn clear(&mut self) {
+        self.age = 0;
+        self.lists.iter_mut().for_each(Vec::clear);
+    }
 }
 
 /// How much was looked at.
@@ -99,6 +123,8 @@ pub(crate) struct Update<'a> {
     pub(crate) gravity: [f64; 3],
     /// Whether to leave it to a sweep where that costs less.
     pub(crate) may_leave: bool,
+    /// In every how many steps the accelerations of particles that rest are computed.
+    pub(crate) force_interval: u32,
     /// Whether there are new or removed particles: then there is nothing to take away or to add to.
     pub(crate) all_anew: bool,
     pub(crate) changes: &'a mut Changes,
@@ -119,10 +145,24 @@ impl Update<'_> {
         let density_pairs =
             if by_sums { self.densities_anew() } else { lanes::run(DensityChanges(&mut self)) };
         self.pressures();
-        let force_pairs = match self.touched_by_changes(by_sums) {
-            Some(pairs) => self.accelerations_anew(pairs),
-            None => lanes::run(ForceChanges(&mut self)),
+        let is_due = self.changes.overdue.age + 1 >= self.force_interval;
+        let force_pairs = if by_sums && !is_due {
+            self.postpone();
+            self.accelerations_anew()
+        } else if self.touched_by_changes(by_sums, is_due) {
+            self.accelerations_anew()
+        } else {
+            let pairs = lanes::run(ForceChanges(&mut self));
+            match is_due && !self.changes.overdue.is_empty() {
+                true => {
+                    self.touched_by_overdue();
+                    pairs + self.accelerations_anew()
+                }
+                false => pairs,
+            }
         };
+        let overdue = &mut self.changes.overdue;
+        if is_due { overdue.clear() } else { overdue.age += 1 }
         let changed = self.changes.changed.len() as u64;
         self.changes.finish(self.state, self.walls);
         Some(Looked { density_pairs, force_pairs, changed })
@@ -222,15 +262,16 @@ impl Update<'_> {
         pairs_of(touched, neighbours)
     }
 
-    /// The same for accelerations: marks all that may have another one, if computing theirs anew is
-    /// cheaper. Where densities were computed `by_sums`, what is touched is all that movers are or were
-    /// near to.
-    fn touched_by_changes(&mut self, by_sums: bool) -> Option<u64> {
+    /// Marks all particles that may have another acceleration, those by what is overdue included if it
+    /// `is_due`. Returns false, and marks none, if computing theirs anew costs more than looking at the pairs
+    /// of what has changed. Where densities were computed `by_sums`, what is touched is all that movers are
+    /// or were near to.
+    fn touched_by_changes(&mut self, by_sums: bool, is_due: bool) -> bool {
         let Changes { marks, touched, changed, changed_walls, stale, .. } = &mut *self.changes;
         if changed.len() as f64 > MOST_CHANGED * marks.len() as f64 {
             stale.extend(0..marks.len() as u32);
             marks.iter_mut().for_each(|mark| *mark |= STALE);
-            return Some(self.neighbours.n_pairs() as u64);
+            return true;
         }
         let most = match self.all_anew {
             true => usize::MAX,
@@ -254,7 +295,7 @@ impl Update<'_> {
             }
             if stale.len() > most {
                 stale.drain(..).for_each(|i| marks[i as usize] &= !STALE);
-                return None;
+                return false;
             }
         }
         for &wall in changed_walls.iter() {
@@ -264,16 +305,57 @@ impl Update<'_> {
             };
             touch(near, STALE, marks, stale);
         }
-        Some(pairs_of(stale, self.neighbours))
+        if is_due {
+            self.touched_by_overdue();
+        }
+        true
     }
 
-    /// Computes stale accelerations anew.
-    fn accelerations_anew(&mut self, n_pairs: u64) -> u64 {
+    /// Marks all particles that may have another acceleration by what is overdue. What rests now and has
+    /// been near to something that moved has been touched by that.
+    fn touched_by_overdue(&mut self) {
+        let Changes { marks, stale, overdue, .. } = &mut *self.changes;
+        let [touched, changed, walls] = &overdue.lists;
+        touch(touched, STALE, marks, stale);
+        for &here in changed {
+            touch(&[here], STALE, marks, stale);
+            self.neighbours.within(
+                here as usize,
+                &self.state.x,
+                self.walls,
+                self.laws.kernel.support().powi(2),
+                [&mut |near| touch(near, STALE, marks, stale), &mut |_| ()],
+            );
+        }
+        for &wall in walls {
+            touch(self.neighbours.fluid_candidates(wall as usize), STALE, marks, stale);
+        }
+    }
+
+    /// Marks only those that move or have just stopped, and notes what has changed for the others.
+    fn postpone(&mut self) {
+        let Changes { marks, touched, changed, changed_walls, stale, overdue, .. } =
+            &mut *self.changes;
+        let turned = |i: &u32, marks: &[u8]| marks[*i as usize] & TURNED != 0;
+        for &here in changed.iter() {
+            if turned(&here, marks) {
+                touch(&[here], STALE, marks, stale);
+            }
+        }
+        let [all_touched, all_changed, all_walls] = &mut overdue.lists;
+        all_touched.extend_from_slice(touched);
+        let has_not_moved = |i: &u32| marks[*i as usize] & MOVED == 0;
+        all_changed.extend(changed.iter().copied().filter(has_not_moved));
+        all_walls.extend_from_slice(changed_walls);
+    }
+
+    /// Computes stale accelerations anew. Returns the number of pairs.
+    fn accelerations_anew(&mut self) -> u64 {
         let only = Marked { marks: &self.changes.marks, bits: STALE };
         let stale = (self.gravity, Some(only));
         let State { x, w, a, .. } = &mut *self.state;
         sweep::accelerations(self.laws, x, w, self.walls, self.neighbours, stale, a);
-        n_pairs
+        pairs_of(&self.changes.stale, self.neighbours)
     }
 
     /// Densities by the pairs with a mover. Returns how many.
@@ -513,6 +595,7 @@ impl WithSimd for ForceChanges<'_, '_> {
 impl Changes {
     /// Everything has been computed from this state.
     pub(crate) fn evaluated_all(&mut self, state: &State, walls: &WallState) {
+        self.overdue.clear();
         self.x.clone_from(&state.x);
         self.w.clone_from(&state.w);
         self.wall_terms.clear();
@@ -522,6 +605,7 @@ impl Changes {
     /// What was computed is not known here.
     pub(crate) fn forget(&mut self) {
         self.x.clear();
+        self.overdue.clear();
     }
 
     /// True if what was computed is known here.
@@ -531,6 +615,8 @@ impl Changes {
 
     /// A particle is gone; the last one gets its place.
     pub(crate) fn swap_remove(&mut self, i: usize) {
+        let last = self.x.len() as u32 - 1;
+        self.overdue.lists[..2].iter_mut().for_each(|list| rename(list, i as u32, last));
         self.x.swap_remove(i);
         self.w.swap_remove(i);
     }

@@ -29,6 +29,7 @@ impl<R: Restraint> Fluid<R> {
     /// True if particles have to be sorted before the next step.
     pub(crate) fn is_out_of_order(&self) -> bool {
         self.is_known()
+            && self.scratch.changes.overdue.is_empty()
             && self.neighbours.n_mended as f64 > MOST_MENDED * self.state.len() as f64
     }
 
