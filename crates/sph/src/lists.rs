@@ -2,6 +2,8 @@
 
 use crate::grid::{Columns, Grid, Point};
 use crate::lanes::LANES;
+use crate::place::{Place, squared_distance};
+use pulp::Simd;
 
 /// Candidates for which there is room to spare once lists have been mended.
 const SPARE_ROOM: usize = 8;
@@ -121,27 +123,34 @@ impl Lists {
     /// their squared distances in the place of F for `weigh`, a multiple of `LANES` at a time.
     /// Padding names the particle `filler` at a distance of three smoothing lengths.
     #[inline(always)]
-    pub(crate) fn activate(
+    pub(crate) fn activate<S: Simd>(
         &mut self,
+        simd: S,
         k: usize,
         p: &Point,
         points: &[Point],
-        support_squared: f64,
-        filler: u32,
+        (support_squared, filler): (f64, u32),
     ) -> (&[u32], &mut [f64]) {
         let start = self.start[k] as usize;
         let candidates = &self.candidates[start..start + self.count[k] as usize];
         let begin = self.room_of(k);
         let end = begin + candidates.len() + LANES;
         let (active, r_squared) = (&mut self.active[begin..end], &mut self.slope[begin..end]);
+        let here = Place::splat(simd, p);
         let mut n = 0;
-        for &j in candidates {
-            let q = &points[j as usize];
-            let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-            let squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-            active[n] = j;
-            r_squared[n] = squared;
-            n += usize::from(squared < support_squared);
+        let mut add = |at: &[u32], squared: &[f64]| {
+            for (&j, &squared) in at.iter().zip(squared) {
+                active[n] = j;
+                r_squared[n] = squared;
+                n += usize::from(squared < support_squared);
+            }
+        };
+        let (fours, rest) = candidates.as_chunks::<LANES>();
+        for at in fours {
+            add(at, &here.squared_distance(&Place::gather(simd, points, *at)).array());
+        }
+        for &j in rest {
+            add(&[j], &[squared_distance(p, &points[j as usize])]);
         }
         self.n_within[k] = n as u32;
         while n % LANES != 0 {

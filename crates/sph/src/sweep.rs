@@ -90,7 +90,7 @@ impl WithSimd for WallDensities<'_> {
             if self.only.is_some_and(|only| !only.has(i)) {
                 continue;
             }
-            let (_, weights) = self.lists.activate(k, &self.places[i], self.x, support_squared, 0);
+            let (_, weights) = self.lists.activate(simd, k, &self.places[i], self.x, (support_squared, 0));
             let mut fluid = Four::splat(simd, 0.0);
             for four in weights.chunks_exact_mut(LANES) {
                 fluid = fluid + weigh(simd, kernel, four);
@@ -132,12 +132,12 @@ fn densities_of_block<S: Simd>(simd: S, task: Densities<'_>) {
             continue;
         }
         let p = &x[first + k];
-        let (_, weights) = block.fluid.activate(k, p, x, support_squared, (first + k) as u32);
+        let (_, weights) = block.fluid.activate(simd, k, p, x, (support_squared, (first + k) as u32));
         let mut fluid = Four::splat(simd, 0.0);
         for four in weights.chunks_exact_mut(LANES) {
             fluid = fluid + weigh(simd, kernel, four);
         }
-        let (active, weights) = block.wall.activate(k, p, &walls.x, support_squared, 0);
+        let (active, weights) = block.wall.activate(simd, k, p, &walls.x, (support_squared, 0));
         let mut wall = Four::splat(simd, 0.0);
         for (four, at) in weights.chunks_exact_mut(LANES).zip(active.chunks_exact(LANES)) {
             wall = wall + weigh(simd, kernel, four) * numbers(simd, &walls.mass, at);
@@ -225,9 +225,9 @@ fn accelerations_of_block<S: Simd>(simd: S, task: Accelerations<'_>) {
         }
         if !block.is_fresh[k] {
             let p = &x[first + k];
-            let (_, r) = block.fluid.activate(k, p, x, support_squared, (first + k) as u32);
+            let (_, r) = block.fluid.activate(simd, k, p, x, (support_squared, (first + k) as u32));
             slopes(simd, &laws.kernel, r);
-            let (_, r) = block.wall.activate(k, p, &walls.x, support_squared, 0);
+            let (_, r) = block.wall.activate(simd, k, p, &walls.x, (support_squared, 0));
             slopes(simd, &laws.kernel, r);
             block.is_fresh[k] = true;
         }
