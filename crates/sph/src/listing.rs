@@ -13,6 +13,11 @@ use nalgebra::Vector3;
 /// How many lists are mended until the particles are sorted again, over their number (1): those that move
 /// are farther and farther in memory from those that they are near to.
 const MOST_MENDED: f64 = 0.5;
+/// While everything is computed in each step: the part of half the skin from which on a particle is soon far
+/// from where it was listed (1), and the part of the particles from which on, if they are, listing all
+/// costs less than mending (1).
+const SOON: f64 = 0.7;
+const MOST_SOON: f64 = 1.0 / 16.0;
 
 impl<R: Restraint> Fluid<R> {
     /// How far a particle may be from where it was listed (m).
@@ -26,6 +31,13 @@ impl<R: Restraint> Fluid<R> {
         self.restraint.is_some() && n > 0 && self.scratch.changes.is_known(n)
     }
 
+    /// True if particles come or go now.
+    fn is_due(&self) -> bool {
+        let spacing = self.settings.spacing;
+        self.emitters.iter().any(|emitter| emitter.is_due(self.time, spacing))
+            || self.state.x.iter().any(|x| swallowed(&self.sinks, x))
+    }
+
     /// True if particles have to be sorted before the next step.
     pub(crate) fn is_out_of_order(&self) -> bool {
         self.is_known()
@@ -33,43 +45,59 @@ impl<R: Restraint> Fluid<R> {
             && self.neighbours.n_mended as f64 > MOST_MENDED * self.state.len() as f64
     }
 
-    /// After a motion that began from what was known: lists those that are far from where they were listed
-    /// anew, and lets particles come and go. Returns false, and does nothing, where lists cannot be mended.
+    /// After a motion: lists those that are far from where they were listed anew, and lets particles come and
+    /// go. Returns false, and does nothing, where it is better or necessary to list all.
     ///
     /// Two that were within the support before the step are in each other's lists after it: they may have
     /// come half a skin each away from where they were listed or, at the end of the step, are listed where
     /// they are, half a skin or less from where they were.
     pub(crate) fn mend_lists(&mut self, report: &mut StepReport) -> bool {
-        if !self.is_known() {
-            return false;
-        }
+        let n = self.state.len();
         let half_skin_squared = self.half_skin() * self.half_skin();
+        let is_known = self.is_known();
+        if is_known {
+            let (moved, changes) = (&self.scratch.moved, &self.scratch.changes);
+            let way = |i: &u32| squared_distance(&self.state.x[*i as usize], &changes.x[*i as usize]);
+            let longest = moved.movers.iter().map(way).fold(0.0, |most, way| larger(way, most));
+            if longest > half_skin_squared {
+                return false;
+            }
+        } else if self.farthest <= self.half_skin() && !self.is_due() {
+            return true;
+        } else {
+            let far = self.state.x.iter().zip(&self.listed).map(|(x, r)| squared_distance(x, r));
+            let n_soon = far.filter(|&far| far > SOON * SOON * half_skin_squared).count();
+            let is_too_many = n_soon as f64 > MOST_SOON * n as f64;
+            if is_too_many || self.neighbours.n_mended as f64 > MOST_MENDED * n as f64 {
+                return false;
+            }
+        }
         let reach = self.reach();
         let n_mended = self.neighbours.n_mended;
         let (moved, changes) = (&mut self.scratch.moved, &mut self.scratch.changes);
-        let x = &self.state.x;
-        let way = |i: &u32| squared_distance(&x[*i as usize], &changes.x[*i as usize]);
-        let longest = moved.movers.iter().map(way).fold(0.0, |most, way| larger(way, most));
-        if longest > half_skin_squared {
-            return false;
-        }
         let listed = &mut self.listed;
         let around =
             &mut Surroundings { walls: &self.walls, touched: &mut self.touched, reach };
         self.neighbours.prepare_mending(listed, reach);
-        for &i in &moved.movers {
-            let (i, x) = (i as usize, &x[i as usize]);
-            if squared_distance(x, &listed[i]) > half_skin_squared {
-                self.neighbours.renew(i, x, listed, around);
+        let x = &self.state.x;
+        let mut renew = |i: usize| {
+            if squared_distance(&x[i], &listed[i]) > half_skin_squared {
+                self.neighbours.renew(i, &x[i], listed, around);
             }
+        };
+        match is_known {
+            true => moved.movers.iter().for_each(|&i| renew(i as usize)),
+            false => (0..n).for_each(renew),
         }
         changes.left.iter_mut().for_each(Vec::clear);
         let state = &mut self.state;
-        for i in (0..state.len()).rev() {
+        for i in (0..n).rev() {
             if swallowed(&self.sinks, &state.x[i]) {
                 let (last, i_number) = (state.len() as u32 - 1, i as u32);
                 state.swap_remove(i);
-                changes.swap_remove(i);
+                if is_known {
+                    changes.swap_remove(i);
+                }
                 self.neighbours.remove(i, listed, &mut changes.left);
                 rename(&mut moved.movers, i_number, last);
                 rename(&mut moved.stopped, i_number, last);
@@ -80,7 +108,9 @@ impl<R: Restraint> Fluid<R> {
             emitter.emit(self.time, self.settings.spacing, |x, v| {
                 let i = state.len();
                 state.push(self.next_id, &x, &v);
-                changes.push(&state.x[i], &state.w[i]);
+                if is_known {
+                    changes.push(&state.x[i], &state.w[i]);
+                }
                 listed.push(state.x[i]);
                 self.neighbours.append(listed, around);
                 moved.movers.push(i as u32);
@@ -89,7 +119,9 @@ impl<R: Restraint> Fluid<R> {
                 report.emitted += 1;
             });
         }
-        changes.know_walls(around.touched);
+        if is_known {
+            changes.know_walls(around.touched);
+        }
         report.mended += self.neighbours.n_mended - n_mended;
         self.farthest = self.farthest.min(self.half_skin());
         true
@@ -99,9 +131,7 @@ impl<R: Restraint> Fluid<R> {
     pub(crate) fn emit_and_drain(&mut self, report: &mut StepReport) -> bool {
         let before = self.state.len();
         let sinks = &self.sinks;
-        if self.state.x.iter().any(|x| swallowed(sinks, x)) {
-            self.state.retain(|x| !swallowed(sinks, x));
-        }
+        self.state.retain(|x| !swallowed(sinks, x));
         let kept = self.state.len();
         for emitter in &mut self.emitters {
             let state = &mut self.state;
