@@ -25,9 +25,10 @@ impl Cells {
         // The rounding of coordinates in cells.
         let inverse_size = 1.0 / (reach * (1.0 + 1e-9));
         let mut n = [0, 1, 2].map(|k| {
-            let (low, high) = points
-                .iter()
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (p[k].min(low), p[k].max(high)));
+            let (low, high) =
+                points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
+                    (p[k].min(low), p[k].max(high))
+                });
             let n = ((high - low).max(0.0) * inverse_size).min(1e6) as u64 + 2;
             n.next_power_of_two() as i64
         });

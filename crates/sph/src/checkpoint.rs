@@ -1,8 +1,8 @@
 //! The state of a fluid as plain data: a run that goes on from it has the bits of one that never
 //! stopped.
 
+use crate::changes::Overdue;
 use crate::fluid::Fluid;
-use crate::incremental::Overdue;
 use crate::settings::FluidError;
 use arps::Restraint;
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,8 @@
 //! A fluid and its time step.
 
+use crate::changes::Changes;
 use crate::grid::Point;
-use crate::incremental::{Changes, Update};
+use crate::incremental::Update;
 use crate::motion::{Moved, Outside, larger};
 use crate::neighbours::Neighbours;
 use crate::pair::Laws;

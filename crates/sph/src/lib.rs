@@ -60,7 +60,9 @@
 //!   of [`Fluid::energy`].
 #![forbid(unsafe_code)]
 
+mod by_pairs;
 mod cells;
+mod changes;
 mod checkpoint;
 mod fluid;
 mod grid;

@@ -57,7 +57,8 @@ impl<R: Restraint> Fluid<R> {
         let is_known = self.is_known();
         if is_known {
             let (moved, changes) = (&self.scratch.moved, &self.scratch.changes);
-            let way = |i: &u32| squared_distance(&self.state.x[*i as usize], &changes.x[*i as usize]);
+            let way =
+                |i: &u32| squared_distance(&self.state.x[*i as usize], &changes.x[*i as usize]);
             let longest = moved.movers.iter().map(way).fold(0.0, |most, way| larger(way, most));
             if longest > half_skin_squared {
                 return false;
@@ -76,8 +77,7 @@ impl<R: Restraint> Fluid<R> {
         let n_mended = self.neighbours.n_mended;
         let (moved, changes) = (&mut self.scratch.moved, &mut self.scratch.changes);
         let listed = &mut self.listed;
-        let around =
-            &mut Surroundings { walls: &self.walls, touched: &mut self.touched, reach };
+        let around = &mut Surroundings { walls: &self.walls, touched: &mut self.touched, reach };
         self.neighbours.prepare_mending(listed, reach);
         let x = &self.state.x;
         let mut renew = |i: usize| {

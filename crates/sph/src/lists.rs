@@ -82,7 +82,14 @@ impl Lists {
 
     /// Adds a particle whose candidates are among the points of the rows around `p`.
     #[inline(always)]
-    pub(crate) fn push(&mut self, grid: &Grid, columns: &Columns, p: &Point, reach: f64, but: usize) {
+    pub(crate) fn push(
+        &mut self,
+        grid: &Grid,
+        columns: &Columns,
+        p: &Point,
+        reach: f64,
+        but: usize,
+    ) {
         let first = *self.start.last().expect("cleared before");
         let mut n = first as usize;
         let reach_squared = reach * reach;

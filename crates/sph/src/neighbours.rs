@@ -3,12 +3,12 @@
 //! The lists stay good until a particle has moved by half the skin. Particles are sorted by cell first,
 //! so that neighbours in space are neighbours in memory.
 
-use crate::grid::{Columns, Grid, Point};
 use crate::cells::Cells;
+use crate::grid::{Columns, Grid, Point};
 use crate::lanes;
 use crate::lists::Lists;
-use crate::place::squared_distance;
 use crate::mend::{Mending, Surroundings};
+use crate::place::squared_distance;
 use crate::walls::{WallState, Walls};
 use mesh_core::par;
 use pulp::{Simd, WithSimd};

@@ -53,16 +53,7 @@ pub(crate) fn wall_densities(
 ) {
     let WallState { x: places, own, density, .. } = walls;
     par::blocks(&mut neighbours.wall_blocks, density, BLOCK, |b, lists, density| {
-        lanes::run(WallDensities {
-            laws,
-            x,
-            places,
-            own,
-            first: b * BLOCK,
-            lists,
-            density,
-            only,
-        });
+        lanes::run(WallDensities { laws, x, places, own, first: b * BLOCK, lists, density, only });
     });
 }
 
@@ -90,7 +81,8 @@ impl WithSimd for WallDensities<'_> {
             if self.only.is_some_and(|only| !only.has(i)) {
                 continue;
             }
-            let (_, weights) = self.lists.activate(simd, k, &self.places[i], self.x, (support_squared, 0));
+            let (_, weights) =
+                self.lists.activate(simd, k, &self.places[i], self.x, (support_squared, 0));
             let mut fluid = Four::splat(simd, 0.0);
             for four in weights.chunks_exact_mut(LANES) {
                 fluid = fluid + weigh(simd, kernel, four);
@@ -132,7 +124,8 @@ fn densities_of_block<S: Simd>(simd: S, task: Densities<'_>) {
             continue;
         }
         let p = &x[first + k];
-        let (_, weights) = block.fluid.activate(simd, k, p, x, (support_squared, (first + k) as u32));
+        let (_, weights) =
+            block.fluid.activate(simd, k, p, x, (support_squared, (first + k) as u32));
         let mut fluid = Four::splat(simd, 0.0);
         for four in weights.chunks_exact_mut(LANES) {
             fluid = fluid + weigh(simd, kernel, four);

@@ -174,9 +174,9 @@ impl Walls {
     pub(crate) fn near(&self, p: &Point, reach: f64, found: &mut Vec<u32>) {
         if self.grid.may_be_near(p) {
             let rows = self.grid.rows(p).into_iter().flatten().map(|j| j as u32);
-            found.extend(rows.filter(|&j| {
-                squared_distance(p, &self.points[j as usize]) < reach * reach
-            }));
+            found.extend(
+                rows.filter(|&j| squared_distance(p, &self.points[j as usize]) < reach * reach),
+            );
         }
     }
 
