@@ -35,7 +35,7 @@ impl<R: Restraint> Fluid<R> {
     fn is_due(&self) -> bool {
         let spacing = self.settings.spacing;
         self.emitters.iter().any(|emitter| emitter.is_due(self.time, spacing))
-            || self.state.x.iter().any(|x| swallowed(&self.sinks, x))
+            || !self.sinks.is_empty() && self.state.x.iter().any(|x| swallowed(&self.sinks, x))
     }
 
     /// True if particles have to be sorted before the next step.
@@ -91,7 +91,8 @@ impl<R: Restraint> Fluid<R> {
         }
         changes.left.iter_mut().for_each(Vec::clear);
         let state = &mut self.state;
-        for i in (0..n).rev() {
+        let n_asked = if self.sinks.is_empty() { 0 } else { n };
+        for i in (0..n_asked).rev() {
             if swallowed(&self.sinks, &state.x[i]) {
                 let (last, i_number) = (state.len() as u32 - 1, i as u32);
                 state.swap_remove(i);

@@ -83,6 +83,9 @@ impl WithSimd for WallListing<'_> {
     }
 }
 
+/// Takes neighbours as they are found.
+pub(crate) type Found<'a> = &'a mut dyn FnMut(&[u32]);
+
 /// The neighbours of all particles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Neighbours {
@@ -174,8 +177,8 @@ impl Neighbours {
         self.blocks[i / BLOCK].fluid.candidates(i % BLOCK)
     }
 
-    /// Adds to `found` the candidates of particle `i` in the fluid, and those in the walls, that are within
-    /// the support if all are at `x`: as they were when the active candidates were found, where these are
+    /// Hands out the candidates of particle `i` in the fluid, and those in the walls, that are within the
+    /// support if all are at `x`: as they were when the active candidates were found, where these are
     /// known.
     pub(crate) fn within(
         &self,
@@ -183,7 +186,7 @@ impl Neighbours {
         x: &[Point],
         walls: &WallState,
         support_squared: f64,
-        [fluid, wall]: [&mut dyn FnMut(&[u32]); 2],
+        [fluid, wall]: [Found<'_>; 2],
     ) {
         let (block, k) = (&self.blocks[i / BLOCK], i % BLOCK);
         if block.is_fresh[k] {
@@ -192,7 +195,7 @@ impl Neighbours {
             return;
         }
         let p = &x[i];
-        let each = |candidates: &[u32], points: &[Point], found: &mut dyn FnMut(&[u32])| {
+        let each = |candidates: &[u32], points: &[Point], found: Found<'_>| {
             let near = |j: &&u32| squared_distance(p, &points[**j as usize]) < support_squared;
             candidates.iter().filter(near).for_each(|j| found(&[*j]));
         };

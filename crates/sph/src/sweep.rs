@@ -25,6 +25,13 @@ impl Marked<'_> {
     fn has(&self, i: usize) -> bool {
         self.marks[i] & self.bits != 0
     }
+
+    /// True if any of `n` particles from `first` on has a mark.
+    #[inline(always)]
+    fn any(&self, first: usize, n: usize) -> bool {
+        let all = self.marks[first..first + n].iter().fold(0, |all, mark| all | mark);
+        all & self.bits != 0
+    }
 }
 
 /// Densities (kg/m³) of the particles of the fluid, into `density`; finds the neighbours within the
@@ -74,6 +81,9 @@ impl WithSimd for WallDensities<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
+        if self.only.is_some_and(|only| !only.any(self.first, self.density.len())) {
+            return;
+        }
         let kernel = &self.laws.kernel;
         let support_squared = kernel.support() * kernel.support();
         for (k, slot) in self.density.iter_mut().enumerate() {
@@ -109,7 +119,9 @@ impl WithSimd for Densities<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        densities_of_block(simd, self);
+        if self.only.is_none_or(|only| only.any(self.first, self.density.len())) {
+            densities_of_block(simd, self);
+        }
     }
 }
 
@@ -204,7 +216,9 @@ impl WithSimd for Accelerations<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        accelerations_of_block(simd, self);
+        if self.only.is_none_or(|only| only.any(self.first, self.a.len())) {
+            accelerations_of_block(simd, self);
+        }
     }
 }
 
