@@ -1,6 +1,7 @@
 //! The state of a fluid as plain data: a run that goes on from it has the bits of one that never
 //! stopped.
 
+use crate::changes::Overdue;
 use crate::fluid::Fluid;
 use crate::settings::FluidError;
 use arps::Restraint;
@@ -34,10 +35,19 @@ pub struct Checkpoint {
     pub listed: Vec<[f64; 4]>,
     /// p/ρ² (Pa m⁶/kg²) and densities (kg/m³) of the particles of walls that fluid may touch.
     pub walls: Vec<[f64; 2]>,
+    /// Which particles of walls these are.
+    pub touched: Vec<u32>,
+    /// How often a single particle has got a list of neighbours since all did.
+    pub mended: u64,
     /// Greatest speed (m/s), acceleration (m/s²) and way from where neighbours were listed (m).
     pub greatest: [f64; 3],
     /// Layers that each nozzle has let out.
     pub layers: Vec<u64>,
+    /// Steps since particles at rest got their accelerations.
+    pub age: u32,
+    /// What has changed since then: numbers of particles with movers near them, of particles with another
+    /// pressure, and of `walls` with another pressure.
+    pub overdue: [Vec<u32>; 3],
     /// True if the next step may begin from what this one has computed.
     pub incremental: bool,
 }
@@ -60,8 +70,12 @@ impl<R: Restraint> Fluid<R> {
             given: state.given.clone(),
             listed: self.listed.clone(),
             walls: walls.collect(),
+            touched: touched.number.clone(),
+            mended: self.neighbours.n_mended,
             greatest: [self.fastest, self.hardest, self.farthest],
             layers: self.emitters.iter().map(|emitter| emitter.n_layers).collect(),
+            age: changes.overdue.age,
+            overdue: changes.overdue.lists.clone(),
             incremental: changes.is_known(state.len()),
         }
     }
@@ -103,6 +117,17 @@ impl<R: Restraint> Fluid<R> {
                 }
             }
         }
+        for (list, n) in from.overdue.iter().zip([n, n, from.walls.len()]) {
+            if let Some(&i) = list.iter().find(|&&i| i as usize >= n) {
+                check("particles whose accelerations are overdue", i as usize + 1, n)?;
+            }
+        }
+        check("particles of walls", from.touched.len(), from.walls.len())?;
+        let n_walls = self.walls.n_particles();
+        if let Some(&number) = from.touched.iter().find(|&&j| j as usize >= n_walls) {
+            let (what, found) = ("particles of walls", number as usize + 1);
+            return Err(FluidError::Length { what, found, expected: n_walls });
+        }
         let before = self.checkpoint();
         self.take(from);
         let (found, expected) = (from.walls.len(), self.touched.x.len());
@@ -125,8 +150,8 @@ impl<R: Restraint> Fluid<R> {
         self.state.by_sheets.clone_from(&from.by_sheets);
         self.state.given.clone_from(&from.given);
         self.listed.clone_from(&from.listed);
-        // The particles were sorted by these positions, so that the order stays as it is.
-        self.list_around_listed();
+        self.list_around_listed(&from.touched);
+        self.neighbours.n_mended = from.mended;
         for ((x, density), &[term, of_wall]) in
             self.touched.x.iter_mut().zip(&mut self.touched.density).zip(&from.walls)
         {
@@ -139,6 +164,7 @@ impl<R: Restraint> Fluid<R> {
         let changes = &mut self.scratch.changes;
         if from.incremental {
             changes.evaluated_all(&self.state, &self.touched);
+            changes.overdue = Overdue { age: from.age, lists: from.overdue.clone() };
         } else {
             changes.forget();
         }

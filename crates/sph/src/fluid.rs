@@ -1,7 +1,8 @@
 //! A fluid and its time step.
 
+use crate::changes::Changes;
 use crate::grid::Point;
-use crate::incremental::{Changes, Update};
+use crate::incremental::Update;
 use crate::motion::{Moved, Outside, larger};
 use crate::neighbours::Neighbours;
 use crate::pair::Laws;
@@ -45,10 +46,10 @@ pub struct Fluid<R = ()> {
 /// Memory that lives from step to step and holds nothing of use between two.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
-    moved: Moved,
+    pub(crate) moved: Moved,
     pub(crate) changes: Changes,
-    order: Vec<u32>,
-    spare: Spare,
+    pub(crate) order: Vec<u32>,
+    pub(crate) spare: Spare,
 }
 
 impl Fluid {
@@ -205,11 +206,7 @@ impl<R: Restraint> Fluid<R> {
         }
         let n = self.state.len();
         let mut report = StepReport { steps: 1, particles: n as u64, ..StepReport::default() };
-        let half_skin = 0.5 * self.settings.skin * self.settings.spacing;
-        // As far as a particle may be from where it was listed after this step. Listing now saves a sweep
-        // where the next step looks at changes only.
-        let reach = self.farthest + (self.fastest + self.hardest * dt) * dt;
-        if reach > half_skin && self.scratch.changes.is_known(n) {
+        if self.is_out_of_order() {
             let clock = Instant::now();
             self.list_in_between();
             if let Some(sheets) = &mut sheets {
@@ -223,16 +220,20 @@ impl<R: Restraint> Fluid<R> {
         self.time += dt;
         report.moved =
             if self.restraint.is_some() { self.scratch.moved.movers.len() } else { n } as u64;
-        let lists_are_old = self.emit_and_drain(&mut report) || self.farthest > half_skin;
         report.seconds.motion = clock.elapsed().as_secs_f64() - report.seconds.sheets;
         let clock = Instant::now();
+        let is_mended = self.mend_lists(&mut report);
+        let lists_are_old =
+            !is_mended && (self.emit_and_drain(&mut report) || self.farthest > self.half_skin());
         if lists_are_old {
             self.list_neighbours();
-            report.seconds.neighbours += clock.elapsed().as_secs_f64();
             report.listings += 1;
         }
+        report.seconds.neighbours += clock.elapsed().as_secs_f64();
+        let clock = Instant::now();
         if let Some(sheets) = &mut sheets {
-            self.touch_sheets(sheets, lists_are_old, &mut report.seconds);
+            let others = lists_are_old || report.emitted + report.drained > 0;
+            self.touch_sheets(sheets, others, &mut report.seconds);
         }
         let by_sheets = sheets.as_ref().map_or(&[][..], |sheets| &sheets.changed);
         if lists_are_old || !self.evaluate_changes(by_sheets, &mut report) {
@@ -327,57 +328,6 @@ impl<R: Restraint> Fluid<R> {
         Ok(())
     }
 
-    /// New and removed particles. Returns true if there are any.
-    fn emit_and_drain(&mut self, report: &mut StepReport) -> bool {
-        let before = self.state.len();
-        for sink in &self.sinks {
-            self.state.retain(|x| !sink.swallows(&Vector3::new(x[0], x[1], x[2])));
-        }
-        let kept = self.state.len();
-        for emitter in &mut self.emitters {
-            let state = &mut self.state;
-            emitter.emit(self.time, self.settings.spacing, |x, v| {
-                state.push(self.next_id, &x, &v);
-                self.next_id += 1;
-                self.fastest = self.fastest.max(v.norm());
-            });
-        }
-        report.drained += (before - kept) as u64;
-        report.emitted += (self.state.len() - kept) as u64;
-        report.drained + report.emitted > 0
-    }
-
-    /// Sorts the particles and lists their neighbours.
-    pub(crate) fn list_neighbours(&mut self) {
-        self.neighbours.sort(&self.state.x, self.reach(), &mut self.scratch.order);
-        self.state.sort(&self.scratch.order, &mut self.scratch.spare);
-        self.listed.clone_from(&self.state.x);
-        self.farthest = 0.0;
-        let reach = self.reach();
-        self.neighbours.list(&self.listed, &self.walls, reach, &mut self.touched);
-    }
-
-    /// The same between two steps: what was computed stays good.
-    fn list_in_between(&mut self) {
-        let known = self.scratch.changes.is_known(self.state.len());
-        self.list_neighbours();
-        if known {
-            self.scratch.changes.evaluated_all(&self.state, &self.touched);
-        }
-    }
-
-    /// Lists neighbours again as they were.
-    pub(crate) fn list_around_listed(&mut self) {
-        let reach = self.reach();
-        self.neighbours.sort(&self.listed, reach, &mut self.scratch.order);
-        self.neighbours.list(&self.listed, &self.walls, reach, &mut self.touched);
-    }
-
-    /// How far from a particle others are listed (m).
-    fn reach(&self) -> f64 {
-        self.laws.kernel.support() + self.settings.skin * self.settings.spacing
-    }
-
     /// Densities, pressures and accelerations by what the step has changed. Returns false if so much
     /// moves that everything has to be computed anew.
     fn evaluate_changes(&mut self, by_sheets: &[u32], report: &mut StepReport) -> bool {
@@ -400,6 +350,8 @@ impl<R: Restraint> Fluid<R> {
             tolerance: settings.pressure_tolerance,
             gravity: self.settings.gravity.into(),
             may_leave: settings.sweep_above < 1.0,
+            force_interval: settings.force_interval,
+            all_anew: report.emitted + report.drained > 0,
             changes,
         };
         let Some(looked) = update.run() else { return false };
@@ -414,7 +366,9 @@ impl<R: Restraint> Fluid<R> {
     pub(crate) fn evaluate_all(&mut self, seconds: &mut Seconds) {
         let clock = Instant::now();
         let State { x, w, a, density, by_sheets, .. } = &mut self.state;
-        sweep::densities(&self.laws, x, &mut self.touched, &mut self.neighbours, density, None);
+        let (laws, neighbours) = (&self.laws, &mut self.neighbours);
+        sweep::densities(laws, x, &self.touched, neighbours, density, None);
+        sweep::wall_densities(laws, x, &mut self.touched, neighbours, None);
         for ((x, w), &density) in x.iter_mut().zip(w.iter_mut()).zip(density.iter()) {
             x[3] = self.laws.pressure_term(density);
             w[3] = density;
@@ -440,6 +394,8 @@ impl<R: Restraint> Fluid<R> {
             } else {
                 self.scratch.changes.forget();
             }
+        } else {
+            self.scratch.changes.forget();
         }
         seconds.force += clock.elapsed().as_secs_f64();
     }

@@ -60,13 +60,19 @@
 //!   of [`Fluid::energy`].
 #![forbid(unsafe_code)]
 
+mod by_pairs;
+mod cells;
+mod changes;
 mod checkpoint;
 mod fluid;
 mod grid;
 mod incremental;
 mod kernel;
 mod lanes;
+mod listing;
+mod lists;
 pub mod measure;
+mod mend;
 mod motion;
 mod neighbours;
 mod pair;

@@ -3,133 +3,18 @@
 //! The lists stay good until a particle has moved by half the skin. Particles are sorted by cell first,
 //! so that neighbours in space are neighbours in memory.
 
+use crate::cells::Cells;
 use crate::grid::{Columns, Grid, Point};
-use crate::lanes::{self, LANES};
+use crate::lanes;
+use crate::lists::Lists;
+use crate::mend::{Mending, Surroundings};
+use crate::place::squared_distance;
 use crate::walls::{WallState, Walls};
 use mesh_core::par;
 use pulp::{Simd, WithSimd};
 
 /// Particles per block: one task of a thread.
 pub(crate) const BLOCK: usize = 64;
-
-/// Neighbours of one kind (fluid or wall) of the particles of a block.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Lists {
-    /// Where each particle's candidates start; one more at the end.
-    start: Vec<u32>,
-    candidates: Vec<u32>,
-    /// How many candidates of each particle are within the support, padded to whole lanes, and which;
-    /// every particle has room for all its candidates, so that any of them can be looked at alone.
-    n_active: Vec<u32>,
-    active: Vec<u32>,
-    /// Squared distances in a row of cells.
-    squared: Vec<f64>,
-    /// For each active candidate F(r) = W′(r)/r; 0 in the padding.
-    slope: Vec<f64>,
-}
-
-impl Lists {
-    /// Candidates of the block's particle `k`.
-    #[inline(always)]
-    pub(crate) fn candidates(&self, k: usize) -> &[u32] {
-        &self.candidates[self.start[k] as usize..self.start[k + 1] as usize]
-    }
-
-    /// The candidates of all particles of the block.
-    fn all_mut(&mut self) -> &mut [u32] {
-        let end = self.start.last().map_or(0, |&end| end as usize);
-        &mut self.candidates[..end]
-    }
-
-    /// Neighbours of particle `k` within the support, and F for each, padded to whole lanes.
-    #[inline(always)]
-    pub(crate) fn active(&self, k: usize) -> (&[u32], &[f64]) {
-        let begin = self.room_of(k);
-        let range = begin..begin + self.n_active[k] as usize;
-        (&self.active[range.clone()], &self.slope[range])
-    }
-
-    /// Where the room of particle `k` for active candidates begins.
-    #[inline(always)]
-    fn room_of(&self, k: usize) -> usize {
-        self.start[k] as usize + LANES * k
-    }
-
-    /// Starts anew with no particle.
-    fn clear(&mut self) {
-        self.start.clear();
-        self.start.push(0);
-    }
-
-    /// Adds a particle whose candidates are among the points of the rows around `p`.
-    #[inline(always)]
-    fn push(&mut self, grid: &Grid, columns: &Columns, p: &Point, reach: f64, but: usize) {
-        let mut n = *self.start.last().expect("cleared before") as usize;
-        let reach_squared = reach * reach;
-        for range in grid.rows(p).into_iter().filter(|range| !range.is_empty()) {
-            columns.squared_distances(range.clone(), p, &mut self.squared);
-            if self.candidates.len() < n + range.len() {
-                self.candidates.resize((n + range.len()) * 2, 0);
-            }
-            let room = &mut self.candidates[n..n + range.len()];
-            let mut found = 0;
-            for (j, &squared) in range.zip(&self.squared) {
-                room[found] = j as u32;
-                found += usize::from((squared < reach_squared) & (j != but));
-            }
-            n += found;
-        }
-        self.start.push(n as u32);
-    }
-
-    /// Adds a particle without any candidate.
-    fn push_alone(&mut self) {
-        self.start.push(*self.start.last().expect("cleared before"));
-    }
-
-    /// Makes room for the active candidates.
-    fn finish(&mut self) {
-        let n_particles = self.start.len() - 1;
-        let room = self.room_of(n_particles);
-        self.active.resize(room, 0);
-        self.slope.resize(room, 0.0);
-        self.n_active.resize(n_particles, 0);
-    }
-
-    /// Finds the candidates of particle `k`, which is at `p`, that are within the support, and leaves
-    /// their squared distances in the place of F for `weigh`, a multiple of `LANES` at a time.
-    /// Padding names the particle `filler` at a distance of three smoothing lengths.
-    #[inline(always)]
-    pub(crate) fn activate(
-        &mut self,
-        k: usize,
-        p: &Point,
-        points: &[Point],
-        support_squared: f64,
-        filler: u32,
-    ) -> (&[u32], &mut [f64]) {
-        let candidates = &self.candidates[self.start[k] as usize..self.start[k + 1] as usize];
-        let begin = self.room_of(k);
-        let end = begin + candidates.len() + LANES;
-        let (active, r_squared) = (&mut self.active[begin..end], &mut self.slope[begin..end]);
-        let mut n = 0;
-        for &j in candidates {
-            let q = &points[j as usize];
-            let d = [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-            let squared = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-            active[n] = j;
-            r_squared[n] = squared;
-            n += usize::from(squared < support_squared);
-        }
-        while n % LANES != 0 {
-            active[n] = filler;
-            r_squared[n] = 2.25 * support_squared;
-            n += 1;
-        }
-        self.n_active[k] = n as u32;
-        (&active[..n], &mut r_squared[..n])
-    }
-}
 
 /// What belongs to a block of consecutive particles.
 #[derive(Clone, Debug, Default)]
@@ -198,11 +83,19 @@ impl WithSimd for WallListing<'_> {
     }
 }
 
+/// Takes neighbours as they are found.
+pub(crate) type Found<'a> = &'a mut dyn FnMut(&[u32]);
+
 /// The neighbours of all particles.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Neighbours {
     grid: Grid,
     columns: Columns,
+    /// Where the particles are listed, once lists are mended.
+    pub(crate) cells: Option<Cells>,
+    /// How often a particle has got a list of its own since all did.
+    pub(crate) n_mended: u64,
+    pub(crate) mending: Mending,
     pub(crate) blocks: Vec<Block>,
     /// Fluid particles around each particle of the walls that fluid may touch.
     pub(crate) wall_blocks: Vec<Lists>,
@@ -215,8 +108,15 @@ impl Neighbours {
     }
 
     /// Lists the neighbours of particles that are sorted, and puts the particles of the walls that are
-    /// among them into `touched`.
-    pub(crate) fn list(&mut self, x: &[Point], walls: &Walls, reach: f64, touched: &mut WallState) {
+    /// among them into `touched`, after those that are there to be `kept`.
+    pub(crate) fn list(
+        &mut self,
+        x: &[Point],
+        walls: &Walls,
+        reach: f64,
+        (touched, kept): (&mut WallState, &[u32]),
+    ) {
+        (self.cells, self.n_mended) = (None, 0);
         self.blocks.resize_with(x.len().div_ceil(BLOCK), Block::default);
         self.columns.fill(x);
         let (grid, columns) = (&self.grid, &self.columns);
@@ -226,6 +126,9 @@ impl Neighbours {
             lanes::run(Listing { grid, columns, walls, first, x, reach, block });
         });
         let before = touched.restart(walls);
+        for &j in kept {
+            touched.place_of(walls, &before, j);
+        }
         for block in &mut self.blocks {
             for j in block.wall.all_mut() {
                 *j = touched.place_of(walls, &before, *j);
@@ -237,6 +140,29 @@ impl Neighbours {
             let x = &touched.x[b * BLOCK..b * BLOCK + part.len()];
             lanes::run(WallListing { grid, columns, x, reach, lists });
         });
+    }
+
+    /// The same for particles in any order, of which nothing is listed yet: one after the other.
+    pub(crate) fn list_unsorted(
+        &mut self,
+        x: &[Point],
+        walls: &Walls,
+        reach: f64,
+        (touched, kept): (&mut WallState, &[u32]),
+    ) {
+        let before = touched.restart(walls);
+        for &j in kept {
+            touched.place_of(walls, &before, j);
+        }
+        *self = Neighbours::default();
+        let n_blocks = touched.x.len().div_ceil(BLOCK);
+        self.wall_blocks.resize_with(n_blocks, Lists::default);
+        (0..touched.x.len()).for_each(|j| self.wall_blocks[j / BLOCK].append());
+        self.cells = Some(Cells::over(x, reach));
+        let mut around = Surroundings { walls, touched, reach };
+        for n in 1..=x.len() {
+            self.append(&x[..n], &mut around);
+        }
     }
 
     /// Candidates of particle `i` of the touched walls in the fluid.
@@ -251,7 +177,39 @@ impl Neighbours {
         self.blocks[i / BLOCK].fluid.candidates(i % BLOCK)
     }
 
-    /// The distances of particle `i` from others have changed, but its active candidates have not.
+    /// Hands out the candidates of particle `i` in the fluid, and those in the walls, that are within the
+    /// support if all are at `x`: as they were when the active candidates were found, where these are
+    /// known.
+    pub(crate) fn within(
+        &self,
+        i: usize,
+        x: &[Point],
+        walls: &WallState,
+        support_squared: f64,
+        [fluid, wall]: [Found<'_>; 2],
+    ) {
+        let (block, k) = (&self.blocks[i / BLOCK], i % BLOCK);
+        if block.is_fresh[k] {
+            fluid(block.fluid.within(k));
+            wall(block.wall.within(k));
+            return;
+        }
+        let p = &x[i];
+        let each = |candidates: &[u32], points: &[Point], found: Found<'_>| {
+            let near = |j: &&u32| squared_distance(p, &points[**j as usize]) < support_squared;
+            candidates.iter().filter(near).for_each(|j| found(&[*j]));
+        };
+        each(block.fluid.candidates(k), x, fluid);
+        each(block.wall.candidates(k), &walls.x, wall);
+    }
+
+    /// Fluid within the support of particle `i` of the touched walls when its density was found last.
+    #[inline(always)]
+    pub(crate) fn fluid_within(&self, i: usize) -> &[u32] {
+        self.wall_blocks[i / BLOCK].within(i % BLOCK)
+    }
+
+    /// The distances of particle `i` from others have changed.
     #[inline(always)]
     pub(crate) fn outdate(&mut self, i: usize) {
         self.blocks[i / BLOCK].is_fresh[i % BLOCK] = false;
@@ -265,7 +223,6 @@ impl Neighbours {
 
     /// Pairs of fluid particles in the lists.
     pub(crate) fn n_pairs(&self) -> usize {
-        let ends = |block: &Block| *block.fluid.start.last().unwrap_or(&0) as usize;
-        self.blocks.iter().map(ends).sum::<usize>() / 2
+        self.blocks.iter().map(|block| block.fluid.n_pairs()).sum::<usize>() / 2
     }
 }

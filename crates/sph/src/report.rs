@@ -20,6 +20,8 @@ pub struct StepReport {
     pub force_pairs: u64,
     /// How often neighbours were listed anew.
     pub listings: u64,
+    /// How often a single particle got a list of its own, instead of lists anew for all.
+    pub mended: u64,
     /// New particles.
     pub emitted: u64,
     /// Removed particles.
@@ -77,6 +79,7 @@ impl StepReport {
         self.density_pairs += other.density_pairs;
         self.force_pairs += other.force_pairs;
         self.listings += other.listings;
+        self.mended += other.mended;
         self.emitted += other.emitted;
         self.drained += other.drained;
         self.stopped += other.stopped;

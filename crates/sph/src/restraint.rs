@@ -17,6 +17,9 @@ pub struct RestraintSettings {
     /// Everything is computed anew where more than this part of the particles moves (1), or fewer that are
     /// next to nearly all others. Zero: always; one: never.
     pub sweep_above: f64,
+    /// In every how many steps a particle that rests gets its acceleration (1), if little moves; what moves
+    /// gets its in every step. Above 1 the two particles of a pair get opposite forces on average only.
+    pub force_interval: u32,
 }
 
 impl RestraintSettings {
@@ -29,6 +32,7 @@ impl RestraintSettings {
             inactivity: 0.0,
             pressure_tolerance: 0.01 * layer,
             sweep_above: 0.4,
+            force_interval: 1,
         }
     }
 
@@ -44,6 +48,8 @@ impl RestraintSettings {
         let tolerance = self.pressure_tolerance;
         check("pressure_tolerance", tolerance, tolerance >= 0.0, "0 or more")?;
         let part = self.sweep_above;
+        let interval = self.force_interval;
+        check("force_interval", interval.into(), interval >= 1, "1 or more")?;
         check("sweep_above", part, (0.0..=1.0).contains(&part), "from 0 to 1")
     }
 }

@@ -61,6 +61,17 @@ impl Emitter {
         Bounds::new(self.centre - reach, self.centre + reach)
     }
 
+    /// When the next layer leaves (s).
+    fn leaves(&self, spacing: f64) -> f64 {
+        self.from + self.n_layers as f64 * (spacing / self.speed)
+    }
+
+    /// True if a layer has left by a time (s) and has not been let out yet.
+    pub(crate) fn is_due(&self, time: f64, spacing: f64) -> bool {
+        let leaves = self.leaves(spacing);
+        leaves <= time && leaves <= self.until
+    }
+
     /// Hands the particles that have left up to a time (s) to `push`: positions (m), velocities (m/s).
     pub(crate) fn emit(
         &mut self,
@@ -68,15 +79,10 @@ impl Emitter {
         spacing: f64,
         mut push: impl FnMut(Vector3<f64>, Vector3<f64>),
     ) {
-        let period = spacing / self.speed;
         let n = self.half_size.map(|half| ((2.0 * half / spacing + 1e-9).floor() as i64).max(1));
         let velocity = self.direction * self.speed;
-        loop {
-            let leaves = self.from + self.n_layers as f64 * period;
-            if leaves > time || leaves > self.until {
-                return;
-            }
-            let middle = self.centre + velocity * (time - leaves);
+        while self.is_due(time, spacing) {
+            let middle = self.centre + velocity * (time - self.leaves(spacing));
             for i in 0..n[0] {
                 for j in 0..n[1] {
                     let at = |i: i64, n: i64| (i as f64 - 0.5 * (n - 1) as f64) * spacing;

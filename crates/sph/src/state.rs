@@ -79,6 +79,19 @@ impl State {
         }
     }
 
+    /// Takes out a particle; the last one gets its place.
+    pub(crate) fn swap_remove(&mut self, i: usize) {
+        for list in [&mut self.x, &mut self.w, &mut self.u, &mut self.a] {
+            list.swap_remove(i);
+        }
+        self.density.swap_remove(i);
+        self.id.swap_remove(i);
+        if !self.by_sheets.is_empty() {
+            self.by_sheets.swap_remove(i);
+            self.given.swap_remove(i);
+        }
+    }
+
     /// Puts the particles in an order, through `spare`, which holds nothing of use before or after.
     pub(crate) fn sort(&mut self, order: &[u32], spare: &mut Spare) {
         gather(&mut self.x, order, &mut spare.points);

@@ -6,7 +6,8 @@
 use crate::grid::Point;
 use crate::kernel::CubicSpline;
 use crate::lanes::{self, Four, LANES};
-use crate::neighbours::{BLOCK, Block, Lists, Neighbours};
+use crate::lists::Lists;
+use crate::neighbours::{BLOCK, Block, Neighbours};
 use crate::pair::{Laws, Side, transpose};
 use crate::walls::WallState;
 use mesh_core::par;
@@ -24,36 +25,42 @@ impl Marked<'_> {
     fn has(&self, i: usize) -> bool {
         self.marks[i] & self.bits != 0
     }
+
+    /// True if any of `n` particles from `first` on has a mark.
+    #[inline(always)]
+    fn any(&self, first: usize, n: usize) -> bool {
+        let all = self.marks[first..first + n].iter().fold(0, |all, mark| all | mark);
+        all & self.bits != 0
+    }
 }
 
-/// Densities (kg/m³) of the particles of the fluid, into `density`, and of the walls that it touches;
-/// finds the neighbours within the support. `only` are the particles and walls to look at, if not all.
+/// Densities (kg/m³) of the particles of the fluid, into `density`; finds the neighbours within the
+/// support. `only` are the particles to look at, if not all.
 pub(crate) fn densities(
+    laws: &Laws,
+    x: &[Point],
+    walls: &WallState,
+    neighbours: &mut Neighbours,
+    density: &mut [f64],
+    only: Option<Marked<'_>>,
+) {
+    par::blocks(&mut neighbours.blocks, density, BLOCK, |b, block, density| {
+        let first = b * BLOCK;
+        lanes::run(Densities { laws, x, walls, first, block, density, only });
+    });
+}
+
+/// The same for the walls that fluid touches.
+pub(crate) fn wall_densities(
     laws: &Laws,
     x: &[Point],
     walls: &mut WallState,
     neighbours: &mut Neighbours,
-    density: &mut [f64],
-    only: Option<[Marked<'_>; 2]>,
+    only: Option<Marked<'_>>,
 ) {
-    let [only, only_walls] = [0, 1].map(|k| only.map(|both| both[k]));
-    let seen = &*walls;
-    par::blocks(&mut neighbours.blocks, density, BLOCK, |b, block, density| {
-        let first = b * BLOCK;
-        lanes::run(Densities { laws, x, walls: seen, first, block, density, only });
-    });
     let WallState { x: places, own, density, .. } = walls;
     par::blocks(&mut neighbours.wall_blocks, density, BLOCK, |b, lists, density| {
-        lanes::run(WallDensities {
-            laws,
-            x,
-            places,
-            own,
-            first: b * BLOCK,
-            lists,
-            density,
-            only: only_walls,
-        });
+        lanes::run(WallDensities { laws, x, places, own, first: b * BLOCK, lists, density, only });
     });
 }
 
@@ -74,6 +81,9 @@ impl WithSimd for WallDensities<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
+        if self.only.is_some_and(|only| !only.any(self.first, self.density.len())) {
+            return;
+        }
         let kernel = &self.laws.kernel;
         let support_squared = kernel.support() * kernel.support();
         for (k, slot) in self.density.iter_mut().enumerate() {
@@ -81,7 +91,8 @@ impl WithSimd for WallDensities<'_> {
             if self.only.is_some_and(|only| !only.has(i)) {
                 continue;
             }
-            let (_, weights) = self.lists.activate(k, &self.places[i], self.x, support_squared, 0);
+            let (_, weights) =
+                self.lists.activate(simd, k, &self.places[i], self.x, (support_squared, 0));
             let mut fluid = Four::splat(simd, 0.0);
             for four in weights.chunks_exact_mut(LANES) {
                 fluid = fluid + weigh(simd, kernel, four);
@@ -108,7 +119,9 @@ impl WithSimd for Densities<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        densities_of_block(simd, self);
+        if self.only.is_none_or(|only| only.any(self.first, self.density.len())) {
+            densities_of_block(simd, self);
+        }
     }
 }
 
@@ -123,12 +136,13 @@ fn densities_of_block<S: Simd>(simd: S, task: Densities<'_>) {
             continue;
         }
         let p = &x[first + k];
-        let (_, weights) = block.fluid.activate(k, p, x, support_squared, (first + k) as u32);
+        let (_, weights) =
+            block.fluid.activate(simd, k, p, x, (support_squared, (first + k) as u32));
         let mut fluid = Four::splat(simd, 0.0);
         for four in weights.chunks_exact_mut(LANES) {
             fluid = fluid + weigh(simd, kernel, four);
         }
-        let (active, weights) = block.wall.activate(k, p, &walls.x, support_squared, 0);
+        let (active, weights) = block.wall.activate(simd, k, p, &walls.x, (support_squared, 0));
         let mut wall = Four::splat(simd, 0.0);
         for (four, at) in weights.chunks_exact_mut(LANES).zip(active.chunks_exact(LANES)) {
             wall = wall + weigh(simd, kernel, four) * numbers(simd, &walls.mass, at);
@@ -202,7 +216,9 @@ impl WithSimd for Accelerations<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        accelerations_of_block(simd, self);
+        if self.only.is_none_or(|only| only.any(self.first, self.a.len())) {
+            accelerations_of_block(simd, self);
+        }
     }
 }
 
@@ -216,9 +232,9 @@ fn accelerations_of_block<S: Simd>(simd: S, task: Accelerations<'_>) {
         }
         if !block.is_fresh[k] {
             let p = &x[first + k];
-            let (_, r) = block.fluid.activate(k, p, x, support_squared, (first + k) as u32);
+            let (_, r) = block.fluid.activate(simd, k, p, x, (support_squared, (first + k) as u32));
             slopes(simd, &laws.kernel, r);
-            let (_, r) = block.wall.activate(k, p, &walls.x, support_squared, 0);
+            let (_, r) = block.wall.activate(simd, k, p, &walls.x, (support_squared, 0));
             slopes(simd, &laws.kernel, r);
             block.is_fresh[k] = true;
         }

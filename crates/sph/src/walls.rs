@@ -6,6 +6,7 @@
 
 use crate::grid::{Columns, Grid, Point};
 use crate::kernel::CubicSpline;
+use crate::place::squared_distance;
 use crate::settings::{Bounds, FluidError};
 use nalgebra::Vector3;
 use std::collections::HashMap;
@@ -169,6 +170,16 @@ impl Walls {
         &self.grid
     }
 
+    /// Adds the particles within `reach` (m) of `p` to `found`, in ascending order.
+    pub(crate) fn near(&self, p: &Point, reach: f64, found: &mut Vec<u32>) {
+        if self.grid.may_be_near(p) {
+            let rows = self.grid.rows(p).into_iter().flatten().map(|j| j as u32);
+            found.extend(
+                rows.filter(|&j| squared_distance(p, &self.points[j as usize]) < reach * reach),
+            );
+        }
+    }
+
     /// Coordinates of the particles.
     pub(crate) fn columns(&self) -> &Columns {
         &self.columns
@@ -185,6 +196,8 @@ pub(crate) struct WallState {
     /// Density without and with fluid (kg/m³).
     pub(crate) own: Vec<f64>,
     pub(crate) density: Vec<f64>,
+    /// Which particle of the walls each is.
+    pub(crate) number: Vec<u32>,
     /// For each particle of the walls where it is here, or `NOWHERE`.
     place: Vec<u32>,
 }
@@ -210,6 +223,7 @@ impl WallState {
             let term = before.x.get(was).map_or(0.0, |x| x[3]);
             self.x.push([x, y, z, term]);
             self.mass.push(walls.masses[at]);
+            self.number.push(j);
             self.own.push(walls.own[at]);
             self.density.push(before.density.get(was).copied().unwrap_or(walls.own[at]));
         }

@@ -23,6 +23,7 @@ fn resting(tolerance: f64, sweep_above: f64) -> Fluid<Speed> {
         inactivity: 0.01,
         pressure_tolerance: tolerance,
         sweep_above,
+        force_interval: 1,
     };
     fluid.restrained(Speed::new(0.1, 0.2).unwrap(), settings).unwrap()
 }
@@ -167,6 +168,7 @@ fn bad_settings_are_refused() {
         RestraintSettings { inactivity: -1.0, ..good },
         RestraintSettings { pressure_tolerance: f64::NAN, ..good },
         RestraintSettings { sweep_above: 1.5, ..good },
+        RestraintSettings { force_interval: 0, ..good },
     ];
     for settings in bad {
         assert!(fluid.clone().restrained((), settings).is_err(), "{settings:?}");

@@ -70,7 +70,7 @@ fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
     let thresholds = if quick { "v_r=0.02" } else { "v_r=0.01,0.015,0.02,0.03,0.05" };
     let duration = if quick { "duration=1" } else { "duration=30" };
     // Resting water withstands pressure that is not quite even: deep below the current all of it rests.
-    let habits = ["tau=0.01", "inactivity=0.02", "tolerance=0.02"];
+    let habits = ["tau=0.01", "inactivity=0.02", "tolerance=0.02", "interval=4"];
     let options = [&[duration, thresholds, "frame=0.5"], &habits[..]].concat();
     saving(&speedup, "permanent-flow", "permanent_flow", &options, report)?;
     context.save(report)?;

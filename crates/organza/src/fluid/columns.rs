@@ -11,6 +11,8 @@ const COUNTS: &str = "fluid counts";
 const LAYERS: &str = "fluid layers";
 const DENSITIES: &str = "fluid densities";
 const WALLS: &str = "fluid walls";
+const TOUCHED: &str = "fluid touched walls";
+const OVERDUE: [&str; 3] = ["fluid overdue near", "fluid overdue changed", "fluid overdue walls"];
 /// Only where cloth or bodies move in the fluid.
 const SHEETS: &str = "fluid by surfaces";
 const GIVEN: &str = "fluid impulses";
@@ -31,18 +33,24 @@ pub(crate) fn columns(water: &Water) -> Vec<(String, Column)> {
         given,
         listed,
         walls,
+        touched,
+        mended,
+        age,
+        overdue,
         greatest: [fastest, hardest, farthest],
         layers,
         incremental,
     } = water.fluid.checkpoint();
     let mut columns = vec![
         (NUMBERS, Column::F64(vec![time, fastest, hardest, farthest])),
-        (COUNTS, Column::U64(vec![next_id, incremental.into()])),
+        (COUNTS, Column::U64(vec![next_id, incremental.into(), mended, age.into()])),
         (NAMES, Column::U64(id)),
         (LAYERS, Column::U64(layers)),
         (DENSITIES, Column::F64(density)),
         (WALLS, Column::F64(walls.into_flattened())),
+        (TOUCHED, Column::U64(wide(touched))),
     ];
+    columns.extend(OVERDUE.into_iter().zip(overdue.map(|list| Column::U64(wide(list)))));
     if water.meeting.is_some() {
         columns.push((SHEETS, Column::F64(by_sheets.into_flattened())));
         columns.push((GIVEN, Column::F64(given.into_flattened())));
@@ -50,6 +58,10 @@ pub(crate) fn columns(water: &Water) -> Vec<(String, Column)> {
     let points = [x, w, u, a, listed].map(|list| Column::F64(list.into_flattened()));
     columns.extend(POINTS.into_iter().zip(points));
     columns.into_iter().map(|(name, column)| (name.to_owned(), column)).collect()
+}
+
+fn wide(list: Vec<u32>) -> Vec<u64> {
+    list.into_iter().map(u64::from).collect()
 }
 
 /// Puts a fluid of the same scene into the state that `checkpoint` holds.
@@ -72,7 +84,12 @@ pub(crate) fn restore(water: &mut Water, checkpoint: &Checkpoint) -> Result<(), 
         if rest.is_empty() { Ok(points.to_vec()) } else { Err(bad(column)) }
     };
     let &[time, fastest, hardest, farthest] = f64s(NUMBERS)? else { return Err(bad(NUMBERS)) };
-    let &[next_id, incremental] = u64s(COUNTS)? else { return Err(bad(COUNTS)) };
+    let &[next_id, incremental, mended, age] = u64s(COUNTS)? else { return Err(bad(COUNTS)) };
+    let u32s = |column: &'static str| {
+        let narrow = u64s(column)?.iter().map(|&i| u32::try_from(i).map_err(|_| bad(column)));
+        narrow.collect::<Result<Vec<u32>, _>>()
+    };
+    let [near, changed, overdue_walls] = OVERDUE;
     let (walls, rest) = f64s(WALLS)?.as_chunks::<2>();
     if !rest.is_empty() {
         return Err(bad(WALLS));
@@ -92,6 +109,10 @@ pub(crate) fn restore(water: &mut Water, checkpoint: &Checkpoint) -> Result<(), 
         given: if meets { points(GIVEN)? } else { Vec::new() },
         listed: points(listed)?,
         walls: walls.to_vec(),
+        touched: u32s(TOUCHED)?,
+        mended,
+        age: u32::try_from(age).map_err(|_| bad(COUNTS))?,
+        overdue: [u32s(near)?, u32s(changed)?, u32s(overdue_walls)?],
         greatest: [fastest, hardest, farthest],
         layers: u64s(LAYERS)?.to_vec(),
         incremental: incremental != 0,

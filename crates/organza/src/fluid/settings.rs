@@ -88,6 +88,7 @@ pub(crate) fn restraint(
         inactivity: restraint.inactivity_m_per_s,
         pressure_tolerance: restraint.pressure_tolerance_pa.unwrap_or(usual.pressure_tolerance),
         sweep_above: restraint.sweep_above,
+        force_interval: restraint.force_interval,
     }
 }
 

@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release -p sph --example speedup -- block-fall|permanent-flow|dam-break [options]`,
 //! with options `v_r=0.02,0.05,0.1 duration=15 frame=0.25 layers=20 ratio=2 tau=0.05 inactivity=0
-//! tolerance=0.01 sweep=0.6 law=ramp twin=1 threads=1 table=1`; `twin` is the seed of the second free
+//! tolerance=0.01 sweep=0.6 interval=1 law=ramp twin=1 threads=1 table=1`; `twin` is the seed of the second free
 //! run. Lines that begin with `figure` are for programs.
 
 #[path = "../common/cpu_time.rs"]
@@ -141,6 +141,7 @@ fn measure(options: &Options) -> Outcome<()> {
     settings.inactivity = options.number("inactivity", 0.0)?;
     settings.pressure_tolerance *= options.number("tolerance", 0.01)? / 0.01;
     settings.sweep_above = options.number("sweep", settings.sweep_above)?;
+    settings.force_interval = options.number("interval", 1.0)? as u32;
     for v_r in options.text("v_r", "0.05").split(',') {
         let v_r: f64 = v_r.parse()?;
         let v_f = v_r * options.number("ratio", 2.0)?;

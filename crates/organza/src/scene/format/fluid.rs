@@ -210,6 +210,9 @@ pub struct FluidRestraint {
     /// next to nearly all others; 1 for never.
     #[serde(default = "sweep_above")]
     pub sweep_above: f64,
+    /// In every how many steps a particle that rests gets its acceleration (1), if little moves.
+    #[serde(default = "force_interval")]
+    pub force_interval: u32,
 }
 
 /// By what particles are restrained.
@@ -271,4 +274,7 @@ fn bleeding_s() -> Option<f64> {
 }
 fn sweep_above() -> f64 {
     0.4
+}
+fn force_interval() -> u32 {
+    1
 }

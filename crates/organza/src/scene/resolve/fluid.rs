@@ -230,4 +230,5 @@ fn check_habits(restraint: &FluidRestraint, at: &At<'_>) {
         at.key("pressure_tolerance_pa").not_negative(tolerance, 1e12, "Pa");
     }
     at.key("sweep_above").not_negative(restraint.sweep_above, 1.0, "");
+    at.key("force_interval").at_least(restraint.force_interval, 1);
 }
