@@ -54,6 +54,24 @@ fn coarsening_is_by_the_square_of_the_factor() {
     }
 }
 
+/// The limit of a panel counts beside `size_max`, and the field's own wish goes before both.
+#[test]
+fn panels_have_limits_of_their_own() {
+    let cloth = sheet(1.0, 4);
+    let samples = [Sample::new(look([0.0, 0.1, -2.0], [0.0, 0.0, -9.0], 1.0))];
+    let factors = seen(&cloth, &samples, &ViewSettings { size_max: 0.3, ..Default::default() });
+    let no_limits: &[f64] = &[];
+    for (limits, field, size) in
+        [(&[0.1][..], 0.02, 0.1), (&[0.9], 0.02, 0.3), (no_limits, 0.02, 0.3), (&[0.1], 0.15, 0.15)]
+    {
+        let field = ViewSizing::new(Uniform { size: field }, &factors).with_limits(limits);
+        for m in metrics(&cloth, &field) {
+            let sizes = m.eigenvalues().map(|l| 1.0 / l.sqrt());
+            assert!(sizes.iter().all(|s| (s / size - 1.0).abs() < 1e-12), "{sizes:?} {size}");
+        }
+    }
+}
+
 /// Edges of ℓ_min pixels: on a sheet seen at right angles, and along its direction of foreshortening
 /// when it is turned.
 #[test]
