@@ -191,13 +191,17 @@ fn recorded(path: &Path, recordings: &[String]) -> Outcome<serde_json::Value> {
     let mut errors = Vec::new();
     for other in others {
         let mut other = open(other)?;
-        let mut sum = 0.0;
+        let (mut sum, mut n) = (0.0, 0);
         for &k in &frames {
             let (a, b) = (truth.frame(k)?, other.frame(k)?);
             let eye = Eye::new(&loaded, a.time_s);
             let garments = a.garments.iter().zip(&b.garments);
             let all = garments.flat_map(|(a, b)| eye.distances_recorded(a, b)).collect::<Vec<_>>();
             sum += rms(&all);
+            n += all.len();
+        }
+        if n == 0 {
+            return Err("the camera sees no point that both recordings have".into());
         }
         errors.push(sum / frames.len() as f64);
     }

@@ -29,9 +29,14 @@ pub(super) struct Simulation {
     pub(super) out: PathBuf,
 }
 
+/// The value that gives the first cloth of a scene a grid of cells.
+pub(super) fn grid([nx, ny]: [usize; 2]) -> String {
+    format!("cloths[0].mesh.grid.cells=[{nx}, {ny}]")
+}
+
 /// Values that give the first cloth of a scene a grid of cells that stays as it is.
-pub(super) fn fixed_grid([nx, ny]: [usize; 2]) -> Vec<String> {
-    vec!["cloths[0].remeshing=null".into(), format!("cloths[0].mesh.grid.cells=[{nx}, {ny}]")]
+pub(super) fn fixed_grid(cells: [usize; 2]) -> Vec<String> {
+    vec!["cloths[0].remeshing=null".into(), grid(cells)]
 }
 
 /// What a run took and told.

@@ -188,7 +188,6 @@ fn between(scene: &Scene, edge_m: f64, coarse_m: f64) -> Vec<String> {
 /// default in a picture of the default size.
 fn view(scene: &Scene, edge_m: f64) -> Vec<String> {
     let mut sets = adaptive(scene, edge_m);
-    sets.retain(|set| set != "view=null");
     sets.push("view={ size_min_px: 0.4 }".into());
     sets
 }

@@ -15,7 +15,7 @@ use super::view::ask;
 use super::{Benchmark, Context, number, stages};
 use crate::command::{Failure, say};
 use method::{METHODS, Method};
-use scene::{Measure, Plan, SCENES, Scene};
+use scene::{Plan, SCENES, Scene};
 use settings::{Cut, Setting};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -106,18 +106,18 @@ fn sweep(context: &Context, report: &mut Report, scene: &Scene) -> Result<(), Fa
         |name: &str, setting: &Setting| simulation(context, scene, plan, name, setting);
     let first = simulation_of("reference", &reference);
     let cost = simulate(context, scene, "reference", &reference, &first)?;
-    let truth = match (scene.measure, scene.cut) {
-        (Measure::Points, Cut::Grid(size_m)) => {
+    let truth = match scene.cut {
+        Cut::Grid(size_m) => {
             let points = lattice([[0.0; 2], size_m], LATTICE);
             let ways = ways(context, plan, &first, &points)?;
             Truth::Points(points, ways)
         }
-        _ => Truth::Recorded(first.out.clone()),
+        Cut::Garment => Truth::Recorded(first.out.clone()),
     };
     let second = simulation_of("other_reference", &other);
     simulate(context, scene, "reference", &other, &second)?;
     let floor = truth.error(context, scene, plan, &second)?;
-    let unit = scene.measure.unit();
+    let unit = scene.cut.unit();
     say(format!("  floor {} {unit}: two references apart", number::short(floor)));
 
     let mut candidates: Vec<Candidate> = METHODS
@@ -239,11 +239,11 @@ fn tell(
     cost: &Measured,
 ) {
     let name = |what: &str| format!("pareto.{}.{what}", scene.name);
-    let unit = scene.measure.unit();
+    let unit = scene.cut.unit();
     let [nx, ny] = LATTICE;
-    let places = match scene.measure {
-        Measure::Points => format!("{nx} × {ny} material points"),
-        Measure::Pixels => "material points in the picture".into(),
+    let places = match scene.cut {
+        Cut::Grid(_) => format!("{nx} × {ny} material points"),
+        Cut::Garment => "material points in the picture".into(),
     };
     let note = format!(
         "RMS distance from a reference of {:.0} faces at the same {places}, mean \

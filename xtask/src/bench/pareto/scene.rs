@@ -8,8 +8,6 @@ pub(super) struct Scene {
     pub(super) name: &'static str,
     /// Its cloth.
     pub(super) cut: Cut,
-    /// How errors are measured.
-    pub(super) measure: Measure,
     /// Longest edges of adaptive meshes (m).
     pub(super) coarsest_m: f64,
     /// The step that the file asks for.
@@ -18,24 +16,6 @@ pub(super) struct Scene {
     pub(super) note: &'static str,
     quick: Plan,
     full: Plan,
-}
-
-/// What an error is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Measure {
-    /// Distance of the same material points, all over the cloth.
-    Points,
-    /// Their distance in the picture, of those that the camera of the scene sees.
-    Pixels,
-}
-
-impl Measure {
-    pub(super) fn unit(self) -> &'static str {
-        match self {
-            Measure::Points => "m",
-            Measure::Pixels => "px",
-        }
-    }
 }
 
 /// How far a scene is followed, and how fine.
@@ -109,7 +89,6 @@ pub(super) const SCENES: &[Scene] = &[
     Scene {
         name: "hang",
         cut: Cut::Grid([1.0, 1.0]),
-        measure: Measure::Points,
         coarsest_m: 0.5,
         integrator: SDIRK2,
         note: "It is followed down to the bottom of its first swing; later its folds are chaotic.",
@@ -137,7 +116,6 @@ pub(super) const SCENES: &[Scene] = &[
     Scene {
         name: "cantilever",
         cut: Cut::Grid([0.12, 0.03]),
-        measure: Measure::Points,
         coarsest_m: 0.02,
         integrator: SDIRK2,
         note: "It bends in a plane; nothing is chaotic.",
@@ -159,7 +137,6 @@ pub(super) const SCENES: &[Scene] = &[
     Scene {
         name: "drape",
         cut: Cut::Grid([1.0, 1.0]),
-        measure: Measure::Points,
         coarsest_m: 0.5,
         integrator: EULER,
         note: "It is followed until it bends over the sphere; how its folds then buckle is chaotic.",
@@ -169,7 +146,6 @@ pub(super) const SCENES: &[Scene] = &[
     Scene {
         name: "flag",
         cut: Cut::Grid([3.0, 2.0]),
-        measure: Measure::Points,
         coarsest_m: 1.0,
         integrator: EULER,
         note: "Flags are chaotic: only the first frames are compared, from rest, as no run can \
@@ -192,7 +168,6 @@ pub(super) const SCENES: &[Scene] = &[
     Scene {
         name: "sphere",
         cut: Cut::Grid([1.0, 1.0]),
-        measure: Measure::Points,
         coarsest_m: 0.5,
         integrator: EULER,
         note: "Cloth struck by a sphere is chaotic: only the first frames are compared, from rest, \
@@ -203,7 +178,6 @@ pub(super) const SCENES: &[Scene] = &[
     Scene {
         name: "hanging-cloth",
         cut: Cut::Grid([1.0, 1.0]),
-        measure: Measure::Points,
         coarsest_m: 0.5,
         integrator: EULER,
         note: "It swings and comes to rest.",
@@ -226,7 +200,6 @@ pub(super) const SCENES: &[Scene] = &[
     Scene {
         name: "dancer",
         cut: Cut::Garment,
-        measure: Measure::Pixels,
         coarsest_m: 0.12,
         integrator: EULER,
         note: "Pixels of the scene's camera, whose picture is 1280 wide, of cloth that it sees. Cloth that \

@@ -1,5 +1,7 @@
 //! One setting of all knobs, as values of a scene.
 
+use super::super::program::grid;
+
 /// How fine, in space and time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Level {
@@ -38,23 +40,28 @@ impl Setting {
     }
 }
 
-/// What the first cloth of a scene is cut from.
+/// What the first cloth of a scene is cut from, and with that how errors are measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Cut {
-    /// A rectangle (m).
+    /// A rectangle (m): distance of the same material points, all over the cloth.
     Grid([f64; 2]),
-    /// The panels of a garment.
+    /// The panels of a garment: their distance in the picture, of those that the camera sees.
     Garment,
 }
 
 impl Cut {
+    /// The unit of errors.
+    pub(super) fn unit(self) -> &'static str {
+        match self {
+            Cut::Grid(_) => "m",
+            Cut::Garment => "px",
+        }
+    }
+
     /// Values for a mesh of cells with edges of this length.
     pub(super) fn mesh(self, edge_m: f64) -> String {
         match self {
-            Cut::Grid(size_m) => {
-                let [nx, ny] = cells(size_m, edge_m);
-                format!("cloths[0].mesh.grid.cells=[{nx}, {ny}]")
-            }
+            Cut::Grid(size_m) => grid(cells(size_m, edge_m)),
             Cut::Garment => format!("cloths[0].mesh.garment.cell_m={edge_m}"),
         }
     }

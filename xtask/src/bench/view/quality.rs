@@ -41,6 +41,7 @@ pub(super) fn error(context: &Context, report: &mut Report, scene: &Scene) -> Re
         "Runs: view-dependent and adaptive.",
         "Runs: adaptive with smallest edges longer by a tenth, and adaptive.",
     );
+    let name = |what: &str| format!("view.{}.{what}", scene.name);
     for (figure, key, note, runs) in [
         ("pixel_error", "errors_px", &whole, error),
         ("chaos_floor", "floors_px", &whole, floor),
@@ -48,14 +49,12 @@ pub(super) fn error(context: &Context, report: &mut Report, scene: &Scene) -> Re
         ("short.chaos_floor", "short_floors_px", &short, floor),
     ] {
         let all = numbers(&told, key);
-        let rms = (all.iter().map(|px| px * px).sum::<f64>() / all.len() as f64).sqrt();
+        report.add(&name(figure), Figure::rms(&all, "px", &format!("{note} {runs}")));
+        let rms = report.value(&name(figure)).unwrap_or(f64::NAN);
         say(format!("  {figure}: {rms:.3} px"));
-        let note = format!("{note} {runs}");
-        report.add(&format!("view.{}.{figure}", scene.name), Figure::rms(&all, "px", &note));
     }
     let note =
         "Largest distance in the picture that one remeshing moves a visible point of the cloth.";
-    let name = |what: &str| format!("view.{}.{what}", scene.name);
     let value = |key: &str| told[key].as_f64().unwrap_or(f64::NAN);
     report.add(&name("pop"), Figure::exact(value("pop_px"), "px", note));
     report.add(
