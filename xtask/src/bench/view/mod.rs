@@ -27,6 +27,8 @@ const FIGURES: &[&str] = &[
     "view.*.chaos_floor",
     "view.*.short.pixel_error",
     "view.*.short.chaos_floor",
+    "view.*.onward.pixel_error",
+    "view.*.onward.chaos_floor",
     "view.*.pop",
     "view.*.pop_floor",
     "view.distance.edge_px",
