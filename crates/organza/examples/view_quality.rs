@@ -66,9 +66,10 @@ fn json5_value(text: &str) -> Outcome<serde_json::Value> {
     Ok(json5::from_str(text)?)
 }
 
-/// Errors of whole runs, compared at every start, and over a short horizon: there the state of the
-/// adaptive run is given to a run with view and to one with smallest edges longer by a tenth, which tells
-/// the floor. What one remeshing moves is the distance from a run without.
+/// Errors of whole runs, compared at every start, and over a short horizon: there one state is given to an
+/// adaptive run, to one with view and to one with smallest edges longer by a tenth, which tells the floor.
+/// It is that of the adaptive run, all of whose hidden cloth has to get coarse at once, and "onward" that of
+/// the run with view. What one remeshing moves is the distance from a run without.
 fn error(path: &Path, [first, last, every]: [u64; 3], horizon: u64) -> Outcome<serde_json::Value> {
     let plain = || vec!["view=null".to_owned()];
     let adaptive = scene(path, plain())?;
@@ -85,20 +86,22 @@ fn error(path: &Path, [first, last, every]: [u64; 3], horizon: u64) -> Outcome<s
     let mut seen = World::new(&view)?;
     let mut beside = World::new(&other)?;
     let (mut errors, mut floors) = (vec![], vec![]);
-    let (mut short_errors, mut short_floors) = (vec![], vec![]);
+    let [mut short, mut onward] = [(); 2].map(|()| (Vec::new(), Vec::new()));
     let (mut pops, mut pop_floors) = (vec![], vec![]);
     let mut popped = Vec::new();
     for frame in 0..=last {
         if frame >= first && (frame - first) % every == 0 {
-            let start = save(&mut along);
-            let ahead = |loaded: &Loaded| ahead(loaded, &start, horizon);
             let eye = Eye::new(&view, along.time());
             errors.push(eye.rms(&along.cloth, &seen.cloth));
             floors.push(eye.rms(&along.cloth, &beside.cloth));
-            let truth = ahead(&adaptive)?;
-            let eye = Eye::new(&view, truth.time());
-            short_errors.push(eye.rms(&truth.cloth, &ahead(&view)?.cloth));
-            short_floors.push(eye.rms(&truth.cloth, &ahead(&other)?.cloth));
+            for (world, (errors, floors)) in [(&mut along, &mut short), (&mut seen, &mut onward)] {
+                let start = save(world);
+                let ahead = |loaded: &Loaded| ahead(loaded, &start, horizon);
+                let truth = ahead(&adaptive)?;
+                let eye = Eye::new(&view, truth.time());
+                errors.push(eye.rms(&truth.cloth, &ahead(&view)?.cloth));
+                floors.push(eye.rms(&truth.cloth, &ahead(&other)?.cloth));
+            }
         }
         if frame < last {
             beside.advance()?;
@@ -125,7 +128,8 @@ fn error(path: &Path, [first, last, every]: [u64; 3], horizon: u64) -> Outcome<s
     let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     Ok(json!({
         "errors_px": errors, "floors_px": floors,
-        "short_errors_px": short_errors, "short_floors_px": short_floors,
+        "short_errors_px": short.0, "short_floors_px": short.1,
+        "onward_errors_px": onward.0, "onward_floors_px": onward.1,
         "pop_px": most(&pops), "pop_floor_px": most(&pop_floors), "pops": popped,
     }))
 }

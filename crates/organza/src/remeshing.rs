@@ -12,7 +12,7 @@ use remesh::{
     CornerMetrics, PerPanel, PhysicalSizing, RemeshError, RemeshReport, RemeshSettings,
     SizingField, adapt,
 };
-use sizing_view::{ViewFactors, ViewSizing};
+use sizing_view::{ViewFactors, ViewSizing, shift_metrics};
 use std::time::Instant;
 
 /// Principal stretches that edits may leave in cloth without strain limits (1): more strain than this
@@ -149,6 +149,9 @@ impl Remeshing {
             obstacle_sizing::metrics(cloth, bodies, time, OBSTACLE_REACH * room, angle)
         });
         let obstacle_s = if obstacle.is_some() { lap() } else { 0.0 };
+        let samples = self.view.as_ref().map(|eyes| eyes.samples(cloth, time, obstacles));
+        let seen = self.view.as_ref().zip(samples.as_deref());
+        let shift = seen.map(|(eyes, samples)| shift_metrics(cloth, samples, eyes.settings()));
         let settings = RemeshSettings {
             aspect_min: self.aspect_min,
             hysteresis: self.hysteresis,
@@ -157,11 +160,11 @@ impl Remeshing {
             fixed_panels: &self.fixed_panels,
             stretch_limits: &self.stretch_limits,
             hold,
+            shift: shift.as_deref().unwrap_or_default(),
             obstacle: obstacle.as_deref(),
         };
-        let factors = self.view.as_ref().map(|eyes| {
-            let samples = eyes.samples(cloth, time, obstacles);
-            let factors = ViewFactors::evaluate(cloth, &samples, eyes.settings());
+        let factors = seen.map(|(eyes, samples)| {
+            let factors = ViewFactors::evaluate(cloth, samples, eyes.settings());
             factors.expect("a window has its camera, and the scene's settings have been checked")
         });
         let view_s = if factors.is_some() { lap() } else { 0.0 };

@@ -168,6 +168,7 @@ fn mistakes_are_named() {
         ("view: {occlusion: true, v_hidden: 2},", "v_hidden is 2"),
         ("view: {cameras: [{camera: {position: [0, 0, 0], target: [0, 0, 0]}}]},", "cameras[0]"),
         ("view: {predicted: 1},", "predicted"),
+        ("view: {shift_max_px: -1},", "shift_max_px is -1"),
         ("shots: [{}],", "exactly one of keyframes, gltf"),
         ("shots: [{gltf: {file: 'none.gltf'}}],", "none.gltf"),
     ] {

@@ -78,6 +78,7 @@ impl Driver<'_> {
         self.journal.push(edit);
         self.kept.swap_remove(removed.index());
         self.held.swap_remove(removed.index());
+        self.collapse_passes_limit_on(removed, &ring);
         touched.extend(ring.iter().map(|v| names.local_of[v.index()]));
         let local_kept = names.local_of[kept.index()];
         names.remove(removed);
@@ -125,6 +126,7 @@ impl Driver<'_> {
         removals.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.kept.cmp(&q.1.kept)));
         let is_admissible = |removal: &Removal| {
             self.keeps_shape(&star, removal)
+                && self.collapse_stays_near(v, &star, removal)
                 && (!is_checked || mesh.can_collapse(v, removal.kept, |_, _| {}).is_ok())
         };
         let best = removals.iter().find(|(_, removal)| is_admissible(removal));

@@ -6,12 +6,13 @@ use crate::quality::MeshQuality;
 use crate::report::RemeshReport;
 use crate::settings::{RemeshError, RemeshSettings};
 use mesh_core::{ClothState, Edit, HalfEdge, Mesh, TriangleId, par};
+use nalgebra::Matrix3;
 
 /// Adapts the mesh to a sizing field (Narain2012 §4): evaluates the field once on every triangle,
 /// then [`adapt`]s.
 ///
 /// # Errors
-/// If a setting is out of range or the obstacle metric does not fit; nothing is changed then.
+/// If a setting is out of range or does not fit the mesh; nothing is changed then.
 pub fn remesh<S: SizingField + ?Sized>(
     cloth: &mut ClothState,
     field: &S,
@@ -35,8 +36,8 @@ pub fn remesh<S: SizingField + ?Sized>(
 /// the vertex limit, collapses by the number of vertices, flips around one edit by a constant.
 ///
 /// # Errors
-/// If a setting is out of range or the metrics belong to another state of the mesh; nothing is
-/// changed then.
+/// If a setting is out of range or does not fit the mesh, or the metrics belong to another state of the
+/// mesh; nothing is changed then.
 pub fn adapt(
     cloth: &mut ClothState,
     metrics: &mut CornerMetrics,
@@ -47,6 +48,7 @@ pub fn adapt(
     if expected != got {
         return Err(RemeshError::Stale { expected, got });
     }
+    settings.check_shift(cloth.mesh.n_vertices())?;
     let mut driver = Driver::new(cloth, metrics, settings);
     driver.flip_all();
     driver.split_invalid();
@@ -63,6 +65,8 @@ pub(crate) struct Driver<'a> {
     pub(crate) kept: Vec<bool>,
     /// Vertices around which edges are only split.
     pub(crate) held: Vec<bool>,
+    /// By vertex, the metric of how far the surface may be moved (1/m²); empty for no limit.
+    pub(crate) shift: Vec<Matrix3<f64>>,
     /// Panels that must not be touched; empty if there are none.
     fixed: Vec<bool>,
     pub(crate) journal: Vec<Edit>,
@@ -110,6 +114,7 @@ impl<'a> Driver<'a> {
             settings,
             kept,
             held,
+            shift: settings.shift.to_vec(),
             fixed,
             journal: Vec::new(),
             sizes: Vec::new(),

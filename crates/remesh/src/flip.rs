@@ -111,8 +111,10 @@ impl Driver<'_> {
                 return;
             }
             let Some(g) = self.cloth.mesh.twin(h) else { continue };
+            let corners = [h, g, h.prev(), g.prev()].map(|e| self.cloth.mesh.origin(e));
             let Ok(edit) = self.cloth.flip(h) else { continue };
             self.metrics.follow_flip(h, g);
+            self.flip_passes_limit_on(corners);
             self.journal.push(edit);
             let (t, s) = (h.triangle(), g.triangle());
             self.flipped.push([t, s]);
@@ -174,15 +176,17 @@ impl Driver<'_> {
         if after < self.settings.aspect_min && after < before {
             return false;
         }
-        !self.flip_folds(h, g) && self.flip_keeps_strain(h, g, quad) && mesh.can_flip(h).is_ok()
+        let ends = [h, g, h.prev(), g.prev()].map(|e| mesh.origin(e));
+        let x = ends.map(|v| self.cloth.x[v.index()]);
+        !flip_folds(&x)
+            && self.flip_keeps_strain(mesh.panels()[h.triangle().index()], quad, &x)
+            && self.flip_stays_near([ends[0], ends[1]], quad, &x)
+            && mesh.can_flip(h).is_ok()
     }
 
     /// True if the flip puts no strain into the cloth beyond what is allowed.
-    fn flip_keeps_strain(&self, h: HalfEdge, g: HalfEdge, u: &[Material2; 4]) -> bool {
-        let mesh = &self.cloth.mesh;
-        let x = [h, g, h.prev(), g.prev()].map(|e| self.cloth.x[mesh.origin(e).index()]);
+    fn flip_keeps_strain(&self, panel: u32, u: &[Material2; 4], x: &[World3; 4]) -> bool {
         let pick = |places: [usize; 3]| (places.map(|i| u[i]), places.map(|i| x[i]));
-        let panel = mesh.panels()[h.triangle().index()];
         self.keeps_strain(
             panel,
             [pick([0, 1, 2]), pick([1, 0, 3])],
@@ -190,23 +194,21 @@ impl Driver<'_> {
         )
     }
 
-    /// True if the two new faces would lie across each other in world space.
-    fn flip_folds(&self, h: HalfEdge, g: HalfEdge) -> bool {
-        let x = |e: HalfEdge| self.cloth.x[self.cloth.mesh.origin(e).index()];
-        let [a, b, c, d] = [x(h), x(g), x(h.prev()), x(g.prev())];
-        let cosine = |n: World3, m: World3| {
-            let norms = (n.norm_squared() * m.norm_squared()).sqrt();
-            if norms > 0.0 { n.dot(&m) / norms } else { 1.0 }
-        };
-        let before = cosine(area_vector(a, b, c), area_vector(b, a, d));
-        let after = cosine(area_vector(d, b, c), area_vector(c, a, d));
-        // Written so that positions that are not numbers refuse.
-        !(after >= SHARPEST_FOLD || after >= before)
-    }
-
     /// Queues all edges of a triangle for a check.
     #[inline]
     pub(crate) fn queue_flips(&mut self, t: TriangleId) {
         self.flip_queue.extend([t.half_edge(0), t.half_edge(1), t.half_edge(2)]);
     }
+}
+
+/// True if the two new faces would lie across each other in world space.
+fn flip_folds(&[a, b, c, d]: &[World3; 4]) -> bool {
+    let cosine = |n: World3, m: World3| {
+        let norms = (n.norm_squared() * m.norm_squared()).sqrt();
+        if norms > 0.0 { n.dot(&m) / norms } else { 1.0 }
+    };
+    let before = cosine(area_vector(a, b, c), area_vector(b, a, d));
+    let after = cosine(area_vector(d, b, c), area_vector(c, a, d));
+    // Written so that positions that are not numbers refuse.
+    !(after >= SHARPEST_FOLD || after >= before)
 }

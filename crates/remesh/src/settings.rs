@@ -1,6 +1,7 @@
 //! Settings of a remeshing call and what can be wrong with them.
 
 use crate::metric::Metric;
+use nalgebra::Matrix3;
 
 /// How to remesh. The numbers hold for a whole run; the slices name what this call must respect.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +28,10 @@ pub struct RemeshSettings<'a> {
     /// tight places, where a flip or a collapse could take cloth through something. Names that do not
     /// exist are ignored.
     pub hold: &'a [u64],
+    /// How far a single flip or collapse may move the surface, by vertex, as a metric N on displacements d
+    /// in world space (1/m²): dᵀ N d ≤ 1. A length l in all directions is 1 / l², no limit is 0; cameras
+    /// limit what shows in pixels. Empty for no limit anywhere.
+    pub shift: &'a [Matrix3<f64>],
     /// Metric wanted for the proximity of obstacles, one per triangle (1/m²); handed to the sizing
     /// field.
     pub obstacle: Option<&'a [Metric]>,
@@ -42,6 +47,7 @@ impl Default for RemeshSettings<'_> {
             fixed_panels: &[],
             stretch_limits: &[],
             hold: &[],
+            shift: &[],
             obstacle: None,
         }
     }
@@ -64,6 +70,14 @@ pub enum RemeshError {
     #[error("the obstacle metric has {got} entries for {expected} triangles")]
     Obstacle {
         /// Number of triangles.
+        expected: usize,
+        /// Number of entries.
+        got: usize,
+    },
+    /// The limits of how far the surface may move do not fit the mesh.
+    #[error("shift has {got} entries for {expected} vertices")]
+    Shift {
+        /// Number of vertices.
         expected: usize,
         /// Number of entries.
         got: usize,
@@ -98,6 +112,15 @@ impl RemeshSettings<'_> {
             if !(1.0..=f64::INFINITY).contains(&max) {
                 return fail("stretch_limits (largest)", max, "at least 1");
             }
+        }
+        Ok(())
+    }
+
+    /// Checks that there is a limit for every vertex, or none.
+    pub(crate) fn check_shift(&self, n_vertices: usize) -> Result<(), RemeshError> {
+        let got = self.shift.len();
+        if got > 0 && got != n_vertices {
+            return Err(RemeshError::Shift { expected: n_vertices, got });
         }
         Ok(())
     }

@@ -36,6 +36,7 @@ impl Driver<'_> {
     fn split_edge(&mut self, h: HalfEdge, queue: &mut BinaryHeap<Entry>) {
         let n_triangles = self.cloth.mesh.n_triangles() as u32;
         let g = self.cloth.mesh.twin(h);
+        let ends = [h, h.next()].map(|e| self.cloth.mesh.origin(e));
         let on_line = g.is_some() && self.cloth.mesh.is_feature(h);
         // Refused if a half would be too thin to have a clear orientation.
         let Ok(edit) = self.cloth.split(h) else { return };
@@ -44,6 +45,7 @@ impl Driver<'_> {
         let new = VertexId(self.held.len() as u32);
         let is_held = self.cloth.mesh.neighbours(new).any(|i| self.held[i.index()]);
         self.held.push(is_held);
+        self.split_passes_limit_on(ends);
         self.journal.push(edit);
 
         // Halves, spokes and the outer edges, of which those of the new triangles are renumbered.

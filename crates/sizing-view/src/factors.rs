@@ -178,7 +178,8 @@ impl Eye<'_> {
                 Place::Inside => 0.0,
                 _ => frustum.distance_in_camera(&c, self.settings.margin),
             };
-            wish.factor *= self.settings.smoothed(self.facing(sample, &corners, &c), distance);
+            wish.factor *=
+                self.settings.smoothed(sample.factor(&corners, &c, self.settings), distance);
             add(list, first, wish);
         }
         if away_factor >= 0.0 {
@@ -190,20 +191,6 @@ impl Eye<'_> {
             add(list, first, Wish { triangle, factor: away_factor, finest });
         }
     }
-
-    /// v_fb of Eq. (3): the view factor of a triangle (m; the same in camera space) in the picture.
-    #[inline]
-    fn facing(&self, sample: &Sample, corners: &[World3; 3], c: &[World3; 3]) -> f64 {
-        let fits = if is_back_facing(c) { self.settings.v_back } else { 1.0 };
-        let hidden = sample.depth.as_ref().is_some_and(|depth| depth.hides(corners));
-        if hidden { self.settings.v_hidden.min(fits) } else { fits }
-    }
-}
-
-/// True if the normal of a triangle in camera space points away from the camera.
-#[inline]
-fn is_back_facing([a, b, c]: &[World3; 3]) -> bool {
-    (b - a).cross(&(c - a)).dot(a) > 0.0
 }
 
 /// Adds a wish unless an earlier one covers it.

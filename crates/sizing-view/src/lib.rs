@@ -57,6 +57,7 @@
 //! - What stands in the way: give the samples a [`DepthBuffer`]. Cloth that is hidden from all of
 //!   them counts as not visible.
 //! - No path at hand: [`CameraPath::predicted`] guesses the next frames from the last two cameras.
+//! - No pops: [`shift_metrics`] keep the remesher from edits that move what shows by more than a pixel.
 //! - Restraint by the same cameras: [`ViewRestraint`] lets particles of any kind rest that move by
 //!   less than some pixels per frame, and sooner where nobody sees them.
 //! - Far away cloth costs nothing: a panel that is far from every frustum is decided at once.
@@ -77,6 +78,7 @@ mod path;
 mod restraint;
 mod screen;
 mod settings;
+mod shift;
 mod silhouette;
 mod sizing;
 mod window;
@@ -90,5 +92,6 @@ pub use path::{CameraPath, Key, Shot};
 pub use restraint::{PixelThresholds, ViewRestraint, pixel_speeds};
 pub use screen::bounded;
 pub use settings::ViewSettings;
+pub use shift::shift_metrics;
 pub use sizing::ViewSizing;
 pub use window::{Sample, window};

@@ -19,6 +19,8 @@ pub struct ViewSettings {
     pub window: f64,
     /// ℓ_min: edges are not made shorter than this in the picture; 0 switches the bound off (px).
     pub size_min_px: f64,
+    /// No single edit of the mesh moves what shows by more than this; 0 switches the limit off (px).
+    pub shift_max_px: f64,
     /// Coarsening makes no edge longer than this, unless the field that is coarsened does (m).
     pub size_max: f64,
     /// Smallest ratio of the two sizes of a coarsened metric, from 0 to 1; best that of the
@@ -37,6 +39,7 @@ impl Default for ViewSettings {
             margin: 0.4,
             window: 5.0,
             size_min_px: 4.0,
+            shift_max_px: 1.0,
             size_max: 0.5,
             aspect_min: 0.2,
             silhouette: 0.1,
@@ -62,6 +65,9 @@ impl ViewSettings {
             (0.0..=10_000.0).contains(&x)
         })?;
         check("size_min_px", self.size_min_px, "at least 0 and finite (px)", |x| {
+            x >= 0.0 && x.is_finite()
+        })?;
+        check("shift_max_px", self.shift_max_px, "at least 0 and finite (px)", |x| {
             x >= 0.0 && x.is_finite()
         })?;
         check("size_max", self.size_max, "above 0 (m)", |x| x > 0.0)?;

@@ -4,6 +4,7 @@ use crate::camera::Camera;
 use crate::depth::DepthBuffer;
 use crate::path::CameraPath;
 use crate::settings::ViewSettings;
+use mesh_core::World3;
 
 /// A camera with its weight in the temporal window.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +23,25 @@ impl Sample {
     pub fn new(camera: Camera) -> Sample {
         Sample { weight: 1.0, camera, depth: None }
     }
+
+    /// v_fb of Koh2014 Eq. (3): the view factor of a triangle, `c` in camera space (m), in the picture.
+    #[inline]
+    pub(crate) fn factor(
+        &self,
+        corners: &[World3; 3],
+        c: &[World3; 3],
+        settings: &ViewSettings,
+    ) -> f64 {
+        let fits = if is_back_facing(c) { settings.v_back } else { 1.0 };
+        let hidden = self.depth.as_ref().is_some_and(|depth| depth.hides(corners));
+        if hidden { settings.v_hidden.min(fits) } else { fits }
+    }
+}
+
+/// True if the normal of a triangle in camera space points away from the camera.
+#[inline]
+fn is_back_facing([a, b, c]: &[World3; 3]) -> bool {
+    (b - a).cross(&(c - a)).dot(a) > 0.0
 }
 
 /// The cameras that decide about resolution at time `time` (s): those of the frames `frame` seconds

@@ -9,8 +9,8 @@ pub(super) const HELP: &str = "  \
   --quick       few frames, each run once: shows that it works, and roughly what it costs
   --frames N    frames of each run, where a suite has none of its own [default: 20; 6 with --quick]
   --runs N      how often each run is repeated [default: 3; 1 with --quick]
-  --scene S     scene of the suite flag [default: scenes/flag.json5], and the only one of pareto, stability
-                and peers
+  --scene S     scene of the suite flag [default: scenes/flag.json5], and the only one of pareto, stability,
+                peers and view
   --out DIR     folder of report.json, report.html and the recordings [default: target/bench]
   --baseline DIR  folder of an earlier report.json to compare with
   --plots DIR   folder for every plot as an SVG file too

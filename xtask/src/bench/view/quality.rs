@@ -37,6 +37,9 @@ pub(super) fn error(context: &Context, report: &mut Report, scene: &Scene) -> Re
     let short = format!(
         "The same {horizon} frames after both runs had the same state, that of the adaptive run."
     );
+    let onward = format!(
+        "The same {horizon} frames after both runs had the same state, that of the view-dependent run."
+    );
     let (error, floor) = (
         "Runs: view-dependent and adaptive.",
         "Runs: adaptive with smallest edges longer by a tenth, and adaptive.",
@@ -47,6 +50,8 @@ pub(super) fn error(context: &Context, report: &mut Report, scene: &Scene) -> Re
         ("chaos_floor", "floors_px", &whole, floor),
         ("short.pixel_error", "short_errors_px", &short, error),
         ("short.chaos_floor", "short_floors_px", &short, floor),
+        ("onward.pixel_error", "onward_errors_px", &onward, error),
+        ("onward.chaos_floor", "onward_floors_px", &onward, floor),
     ] {
         let all = numbers(&told, key);
         report.add(&name(figure), Figure::rms(&all, "px", &format!("{note} {runs}")));

@@ -209,6 +209,7 @@ mod default {
             margin,
             window,
             size_min_px,
+            shift_max_px,
             size_max,
             ..
         } = sizing_view::ViewSettings::default();
@@ -218,6 +219,7 @@ mod default {
             margin_m: margin,
             window_frames: window,
             size_min_px,
+            shift_max_px,
             size_max_m: size_max,
             occlusion: false,
             predicted: false,

@@ -90,6 +90,9 @@ pub struct ViewFile {
     pub window_frames: f64,
     /// Edges are not made shorter than this in the picture; 0 for any length (pixels).
     pub size_min_px: f64,
+    /// No single flip or collapse of an edge moves what shows by more than this; 0 for any distance
+    /// (pixels).
+    pub shift_max_px: f64,
     /// Nothing is coarsened beyond this length of edges, nor beyond half the mean width of its panel (m).
     pub size_max_m: f64,
     /// Whether cloth behind obstacles and other cloth is coarsened, too: that which nothing of the

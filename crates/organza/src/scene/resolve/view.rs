@@ -189,6 +189,7 @@ pub(super) fn settings(
         margin: view.margin_m,
         window: view.window_frames,
         size_min_px: view.size_min_px,
+        shift_max_px: view.shift_max_px,
         size_max: view.size_max_m,
         ..ViewSettings::default()
     };
