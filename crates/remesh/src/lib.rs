@@ -52,8 +52,7 @@
 //! - With [`RemeshSettings::stretch_limits`]: flips and collapses strain no triangle beyond its limits,
 //!   unless one that they replace was strained as much. Curved cloth then stays as fine as its
 //!   curvature needs, whatever the field allows.
-//! - With [`RemeshSettings::shift`]: no flip moves the surface farther than the limit where its edges
-//!   cross, and no collapse where the vertex was.
+//! - With [`RemeshSettings::shift`]: no flip and no collapse moves the surface farther than its limits.
 //! - Nothing oscillates with the metrics at hand: a second [`adapt`] with the metrics that the first
 //!   left makes no edit, and neither does a second [`remesh`] with a constant field. A field that
 //!   varies is sampled anew on the new triangles: a smooth one settles within ten calls or so, one

@@ -57,7 +57,7 @@ fn only_what_shows_now_is_limited() {
     assert_eq!(limited(&[below], &ViewSettings { v_back: 1.0, ..fine }), all);
     assert_eq!(limited(&[Sample { weight: 0.8, ..Sample::new(above) }], &fine), 0);
     let mut depth = DepthBuffer::new(&above, 100, 0.02).unwrap();
-    let wall = [[-5.0, -5.0, 1.0], [5.0, -5.0, 1.0], [0.0, 9.0, 1.0]];
+    let wall = [[-1.0, -1.0, 1.0], [1.5, -1.0, 1.0], [0.2, 1.5, 1.0]];
     depth.draw(&wall.map(World3::from));
     assert_eq!(limited(&[Sample { depth: Some(depth), ..Sample::new(above) }], &fine), 0);
     assert_eq!(limited(&[Sample::new(look(OVER, [5.0, 0.0, 0.0], 0.5))], &fine), 0);
