@@ -73,23 +73,21 @@ impl Driver<'_> {
             return true;
         }
         let mesh = &self.cloth.mesh;
+        let place = |h: HalfEdge| (mesh.corner_material(h), self.cloth.x[mesh.origin(h).index()]);
         // The new triangle that the vertex would lie on: it has the greatest of the least weights.
         let mut on: (f64, World3) = (f64::NEG_INFINITY, World3::repeat(f64::NAN));
         for (e, side) in removal.survivors(star) {
-            let corners = [side, e.next(), e.prev()];
-            let u = corners.map(|h| mesh.corner_material(h));
+            let corners = [side, e.next(), e.prev()].map(place);
+            let u = corners.map(|(u, _)| u);
             let s = inverse_edges(u) * (mesh.corner_material(e) - u[0]);
             let weights = [1.0 - s.x - s.y, s.x, s.y];
             let least = weights.into_iter().fold(f64::INFINITY, f64::min);
             if least > on.0 {
-                let x = |h: HalfEdge| self.cloth.x[mesh.origin(h).index()];
-                on = (least, (0..3).map(|k| x(corners[k]) * weights[k]).sum());
+                on = (least, corners.iter().zip(weights).map(|((_, x), weight)| x * weight).sum());
             }
         }
-        let place = |h: HalfEdge| (mesh.corner_material(h), self.cloth.x[mesh.origin(h).index()]);
-        let new_edges = || removal.survivors(star).map(|(e, side)| (side, e.prev()));
-        let is_near = |(side, end): (HalfEdge, HalfEdge)| {
-            let ((u, x), (u_end, x_end)) = (place(side), place(end));
+        let new_edge_is_near = |(e, side): (HalfEdge, HalfEdge)| {
+            let ((u, x), (u_end, x_end)) = (place(side), place(e.prev()));
             // Those on the same side of a line through the vertex.
             let around = removal.survivors(star).filter(|(_, other)| *other == side);
             around.flat_map(|(e, _)| [(e, e.next()), (e, e.prev())]).all(|(e, old)| {
@@ -99,7 +97,8 @@ impl Driver<'_> {
                 apart || self.may_shift(v, &((x + (x_end - x) * s) - (x_v + (x_old - x_v) * t)))
             })
         };
-        self.may_shift(v, &(on.1 - self.cloth.x[v.index()])) && new_edges().all(is_near)
+        self.may_shift(v, &(on.1 - self.cloth.x[v.index()]))
+            && removal.survivors(star).all(new_edge_is_near)
     }
 }
 

@@ -66,6 +66,11 @@ impl Frustum {
         }
     }
 
+    /// The rotation from the axes of the world to those of camera space (1).
+    pub(crate) fn camera_from_world(&self) -> &Matrix3<f64> {
+        &self.camera_from_world
+    }
+
     /// A point of the world (m) in camera space (m).
     #[inline]
     pub fn camera_space(&self, p: World3) -> World3 {

@@ -19,12 +19,18 @@ pub(crate) fn screen_gradient(
 ) -> Matrix2<f64> {
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     let least = corners[0].z.min(corners[1].z).min(corners[2].z);
-    let (towards, depth) = (middle.z.max(camera.near()), least.max(camera.near()));
-    let (a, b) = (middle.x / towards, middle.y / towards);
-    let projection = Matrix2x3::new(1.0, 0.0, -a, 0.0, 1.0, -b);
+    let depth = least.max(camera.near());
+    let projection = projection(camera, &middle);
     let [p, q] = [corners[1] - corners[0], corners[2] - corners[0]];
     let columns = [projection * p, projection * q];
     Matrix2::from_columns(&columns) * inverse_edges * (camera.focal_px() / depth)
+}
+
+/// The derivative of the picture of a point `c` of camera space (m), in units of the focal length (px)
+/// over its depth (m).
+pub(crate) fn projection(camera: &Camera, c: &World3) -> Matrix2x3<f64> {
+    let depth = c.z.max(camera.near());
+    Matrix2x3::new(1.0, 0.0, -c.x / depth, 0.0, 1.0, -c.y / depth)
 }
 
 /// An upper bound of the largest singular value of S for an undistorted triangle anywhere in a ball

@@ -1,10 +1,11 @@
 //! How far edits of the mesh may move what shows.
 
 use crate::frustum::Frustum;
+use crate::screen::projection;
 use crate::settings::ViewSettings;
 use crate::window::Sample;
-use mesh_core::{ClothState, TriangleId, World3, par};
-use nalgebra::{Matrix2x3, Matrix3, Vector2};
+use mesh_core::{ClothState, TriangleId, par};
+use nalgebra::Matrix3;
 
 /// The metric of displacements in the picture, by vertex, for
 /// [`RemeshSettings::shift`](remesh::RemeshSettings::shift) (1/m²): the square of the displacement in
@@ -23,7 +24,8 @@ pub fn shift_metrics(
     }
     let mut metrics = vec![Matrix3::zeros(); cloth.x.len()];
     for sample in samples.iter().filter(|sample| sample.weight >= 1.0) {
-        let frustum = Frustum::new(&sample.camera);
+        let camera = &sample.camera;
+        let frustum = Frustum::new(camera);
         let mut visible = vec![false; cloth.mesh.n_triangles()];
         par::fill(&mut visible, |t| {
             let corners = cloth.corners(TriangleId(t as u32));
@@ -37,22 +39,12 @@ pub fn shift_metrics(
         }
         par::for_each(&mut metrics, |v, metric| {
             if seen[v] {
-                let p =
-                    projection(sample, frustum.camera_space(cloth.x[v])) / settings.shift_max_px;
+                let c = frustum.camera_space(cloth.x[v]);
+                let scale = camera.focal_px() / c.z.max(camera.near()) / settings.shift_max_px;
+                let p = projection(camera, &c) * frustum.camera_from_world() * scale;
                 *metric += p.tr_mul(&p);
             }
         });
     }
     metrics
-}
-
-/// The derivative of the picture of a point of camera space (m) by its place in the world (px/m).
-fn projection(sample: &Sample, c: World3) -> Matrix2x3<f64> {
-    let camera = &sample.camera;
-    let depth = c.z.max(camera.near());
-    let away = Vector2::new(c.x, c.y) / depth;
-    let in_camera =
-        Matrix2x3::new(1.0, 0.0, -away.x, 0.0, 1.0, -away.y) * (camera.focal_px() / depth);
-    let camera_from_world = camera.world_from_camera().inverse().to_rotation_matrix();
-    in_camera * camera_from_world.matrix()
 }
