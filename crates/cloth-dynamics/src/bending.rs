@@ -3,9 +3,9 @@
 //! bending is weak.
 //!
 //! The full stiffness of a triangle couples six vertices, so every vertex with the two rings around
-//! it: twice the blocks that the membrane needs, and three times the work of a factorisation. Where
-//! the step is short for the bending, r = K h²/(m height²) ≪ 1, inertia carries the matrix and the
-//! coupling may be rounded up to one that stays within the triangles (a majoriser, so that every
+//! it: twice the blocks that the membrane needs, and three to seven times the work of a factorisation.
+//! Where the stage is not too long for the bending, r = K h²/(m height²), inertia and tension carry the
+//! matrix, and the coupling may be rounded up to one that stays within the triangles (a majoriser, so that every
 //! step remains a descent):
 //!
 //!   Σ_kl G_kl ∇θ_k ∇θ_lᵀ  ⪯  Σ_k K_k ∇θ_k ∇θ_kᵀ,             K_k = Σ_l |G_kl|       (Gershgorin)
@@ -26,9 +26,10 @@ use crate::solver::{
 use mesh_core::{World3, geometry, par};
 use nalgebra::{Matrix3, Vector3};
 
-/// Above this share r of the inertia, bending keeps its full stiffness: the lean one would cost
-/// Newton iterations.
-const LEAN_BELOW: f64 = 1.0;
+/// Above this multiple r of the inertia bending keeps its full stiffness. With the lean one, sheets that
+/// hang take up to twice the Newton iterations, each for a quarter of the time; strips that buckle, where
+/// nothing but bending carries, would take many times as many.
+const LEAN_BELOW: f64 = 10.0;
 
 /// Bending of all triangles of a [`ShapeOperatorModel`].
 #[derive(Debug)]
@@ -58,7 +59,7 @@ struct Share {
 }
 
 impl ShapeOperatorForce {
-    /// The force for steps of about `h` (s); `mass` is that of the vertices (kg).
+    /// The force for implicit stages of about `h` (s); `mass` is that of the vertices (kg).
     pub(crate) fn new(model: ShapeOperatorModel, mass: &[f64], h: f64) -> Self {
         let mut force = ShapeOperatorForce::unsorted(model);
         let is_stiff = (0..force.hinges_of.len()).map(|e| !force.is_weak(e, mass, h)).collect();
@@ -113,7 +114,7 @@ impl ShapeOperatorForce {
         }
     }
 
-    /// Whether the bending of a triangle is weak against inertia in a step of `h`.
+    /// Whether the bending of a triangle is weak against inertia in a stage of `h`.
     fn is_weak(&self, e: usize, mass: &[f64], h: f64) -> bool {
         let lean = self.model.lean_stiffness(e, &self.model.law(e).at_rest());
         let stencil = &self.model.stencils()[e];

@@ -63,8 +63,10 @@ impl Inertia<'_> {
 const SUFFICIENT: f64 = 1e-4;
 /// The most halvings before a direction is given up.
 const MAX_HALVINGS: usize = 30;
-/// Full steps in a row that may raise the potential before the best point is returned to.
+/// Full steps in a row that may end above the lowest point before it is returned to.
 const WATCH: usize = 2;
+/// The same while each of them ends below the one before: they are on their way back into the valley.
+const WATCH_FALLING: usize = 15;
 /// An iteration that leaves a greater share of the residual than this is slow.
 const SLOW: f64 = 0.3;
 /// The first iterations are never made with the exact Hessian: they are far from its validity.
@@ -165,8 +167,9 @@ pub(crate) struct Minimum {
 ///
 /// A Newton step that turns stiff cloth by an angle θ stretches it by θ²/2. The next step takes that
 /// back, but a line search would not let it come so far, and creep (the Maratos effect). So full
-/// steps are made on trial, and only if a few of them end above the lowest point so far are they
-/// taken back, to follow the direction from there by halves (the watchdog, Nocedal2006 §15.6).
+/// steps are made on trial, and only if a few of them end above the lowest point so far, and no longer
+/// come down towards it, are they taken back, to follow the direction from there by halves (the
+/// watchdog, Nocedal2006 §15.6).
 /// No point above a start is ever returned.
 pub(crate) fn minimise(
     system: &mut System,
@@ -336,11 +339,12 @@ impl Newton<'_> {
             self.lowest.x.clone_from(x);
             self.lowest.direction = direction;
         }
-        self.phi = self.inertia.potential(self.system, &self.trial);
+        let before = std::mem::replace(&mut self.phi, inertia.potential(self.system, &self.trial));
         let lowest = &mut self.lowest;
+        let watch = if self.phi < before { WATCH_FALLING } else { WATCH };
         if self.phi <= lowest.phi + SUFFICIENT * lowest.slope + noise(lowest.phi) {
             lowest.age = 0;
-        } else if self.phi.is_finite() && lowest.age < WATCH && !is_last {
+        } else if self.phi.is_finite() && lowest.age < watch && !is_last {
             lowest.age += 1;
         } else {
             self.halve();

@@ -424,7 +424,7 @@ impl World {
     /// Builds forces, contact, matrix and names if the mesh has changed.
     fn prepare(&mut self) -> Result<(), PrepareError> {
         if self.prepared.is_none() && self.has_cloth() {
-            let h = self.frame_s / f64::from(self.substeps);
+            let h = self.integrator.stage(self.frame_s / f64::from(self.substeps));
             let mut system = System::new(&self.cloth, &self.fabrics, &self.environment, h)?;
             if let Some(settings) = self.contact {
                 let contact =

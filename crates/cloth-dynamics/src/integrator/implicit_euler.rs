@@ -12,6 +12,10 @@ use mesh_core::ClothState;
 pub struct ImplicitEuler;
 
 impl TimeIntegrator for ImplicitEuler {
+    fn stage(&self, h: f64) -> f64 {
+        h
+    }
+
     fn advance(
         &mut self,
         cloth: &mut ClothState,

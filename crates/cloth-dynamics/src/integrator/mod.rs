@@ -26,6 +26,9 @@ pub struct Step {
 
 /// A rule that advances cloth by one step. A step is a transaction: on error the cloth is as before.
 pub trait TimeIntegrator: Send {
+    /// Length of the implicit stages of a step of `h` (s).
+    fn stage(&self, h: f64) -> f64;
+
     /// Advances positions and velocities from `step.time` by `step.h`; `constraints` tells where
     /// vertices are held at a given time (s).
     ///

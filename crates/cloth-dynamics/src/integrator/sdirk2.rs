@@ -25,6 +25,10 @@ pub struct Sdirk2;
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 
 impl TimeIntegrator for Sdirk2 {
+    fn stage(&self, h: f64) -> f64 {
+        GAMMA * h
+    }
+
     fn advance(
         &mut self,
         cloth: &mut ClothState,
@@ -34,7 +38,7 @@ impl TimeIntegrator for Sdirk2 {
         settings: &NewtonSettings,
         Step { time, h }: Step,
     ) -> Result<SolveReport, SolveError> {
-        let (h_stage, h_rest) = (GAMMA * h, (1.0 - GAMMA) * h);
+        let (h_stage, h_rest) = (self.stage(h), (1.0 - GAMMA) * h);
         let stages = [time + h_stage, time + h];
         if let Some(report) = system.sleeps(constraints, Step { time, h }, &stages) {
             return Ok(report);

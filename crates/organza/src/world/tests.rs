@@ -10,6 +10,10 @@ use std::sync::atomic::{AtomicU32, Ordering};
 struct Budget(Arc<AtomicU32>);
 
 impl TimeIntegrator for Budget {
+    fn stage(&self, h: f64) -> f64 {
+        Sdirk2.stage(h)
+    }
+
     fn advance(
         &mut self,
         cloth: &mut ClothState,
