@@ -86,11 +86,12 @@ fn distant_obstacle(context: &Context, report: &mut Report) -> Result<(), Failur
     let far =
         "{ mesh: { sphere: { radius_m: 0.2, detail: 5 } }, transform: { translate: [50, 0, 0] } }";
     let frames = context.options.frames();
+    let cells = if context.options.quick { 20 } else { 60 };
     let mut simulations = Vec::new();
     for (name, obstacles) in [("alone", near.to_string()), ("distant", format!("{near}, {far}"))] {
         let text = format!(
             "{{ frames: {frames}, substeps: 4, cloths: [{{ fabric: 'woven-light',
-                 mesh: {{ grid: {{ size_m: [1, 1], cells: [60, 60] }} }},
+                 mesh: {{ grid: {{ size_m: [1, 1], cells: [{cells}, {cells}] }} }},
                  transform: {{ translate: [-0.5, -0.5, 0.21] }} }}], obstacles: [{obstacles}] }}"
         );
         let scene = context.scene(&format!("contact_{name}"), &text)?;

@@ -81,7 +81,7 @@ fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
 fn by_view(context: &Context, report: &mut Report) -> Result<(), Failure> {
     say("fluid by view");
     let example = Example::build(&context.root, "organza", "fluid_view")?;
-    let frames = if context.options.quick { "40" } else { "200" };
+    let frames = if context.options.quick { "20" } else { "200" };
     let scene = context.root.join("scenes/flow-in-view.json5").display().to_string();
     let run = example.run(&[&scene, frames, V_IN_VIEW])?;
     let free = run.array::<5>("free")?;

@@ -1,4 +1,5 @@
-//! Figures that tests print: counts over more cases than one would like to repeat here.
+//! Figures that tests print: counts over more cases than one would like to repeat here. Quick runs are
+//! without them: tests take minutes to compile.
 
 use super::Context;
 use super::figure::Figure;
@@ -11,6 +12,9 @@ use std::process::{Command, Stdio};
 /// # Errors
 /// If Cargo cannot be started, or a test tells nothing.
 pub(super) fn contact(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    if is_left_out(context, report, "contact.ccd and contact.tangles") {
+        return Ok(());
+    }
     let told = told_by(context, "collision", "ccd")?;
     let counts = |key: &str| told.lines().filter_map(|line| count_after(line, key)).sum::<u64>();
     let (hits, missed) = (counts("hits: "), counts(" missed: "));
@@ -33,6 +37,9 @@ pub(super) fn contact(context: &Context, report: &mut Report) -> Result<(), Fail
 /// # Errors
 /// If Cargo cannot be started.
 pub(super) fn sag(context: &Context, report: &mut Report) -> Result<(), Failure> {
+    if is_left_out(context, report, "view.coarse_sag") {
+        return Ok(());
+    }
     let told = told_by(context, "cloth-dynamics", "tension_field")?;
     let [fine, plain, wrinkled] = ["fine ", "coarse ", "wrinkled "]
         .map(|key| told.lines().find_map(|l| metres_after(l, key)));
@@ -48,6 +55,14 @@ pub(super) fn sag(context: &Context, report: &mut Report) -> Result<(), Failure>
         report.add(&format!("view.coarse_sag.{name}"), figure);
     }
     Ok(())
+}
+
+/// Whether a run is quick, and says then what it is without.
+fn is_left_out(context: &Context, report: &mut Report, figures: &str) -> bool {
+    if context.options.quick {
+        report.remark(&format!("{figures} are told by tests and left out of quick runs."));
+    }
+    context.options.quick
 }
 
 /// What a test of a package prints, whether it passes or fails.

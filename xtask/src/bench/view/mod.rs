@@ -64,7 +64,7 @@ const SCENES: [Scene; 3] = [
         finest: 0.015,
         frames: [300, 12],
         fixed_frames: [8, 2],
-        starts: [[40, 280, 20], [6, 9, 3]],
+        starts: [[40, 280, 20], [0; 3]],
     },
     Scene {
         name: "dancers",
@@ -72,7 +72,7 @@ const SCENES: [Scene; 3] = [
         finest: 0.015,
         frames: [300, 3],
         fixed_frames: [2, 0],
-        starts: [[20, 50, 15], [2, 2, 1]],
+        starts: [[20, 50, 15], [0; 3]],
     },
 ];
 
@@ -87,7 +87,7 @@ struct Scene {
     frames: [usize; 2],
     /// The same on a fixed mesh; 0 for no such run.
     fixed_frames: [usize; 2],
-    /// First and last frame from which short runs start, and their distance.
+    /// First and last frame from which short runs start, and their distance; 0 for no such runs.
     starts: [[usize; 3]; 2],
 }
 
