@@ -7,7 +7,8 @@ use mesh_core::World3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewtonSettings {
     /// The most iterations, each one linear solve; up to three times as many while triangles are out
-    /// of their strain limits.
+    /// of their strain limits. Those from a start that proved no good do not count, in the rare stage
+    /// that has such.
     pub max_iterations: usize,
     /// The stage is converged when no vertex would change its velocity by more than this (m/s).
     pub tolerance: f64,

@@ -154,6 +154,48 @@ fn no_stage_ends_above_its_start() {
     assert!(n_unfinished > 12, "{n_unfinished} stages were cut off: too few to tell");
 }
 
+/// A single iteration is more accurate from where inertia leads than from the start at rest.
+#[test]
+fn inertia_leads_close_to_the_minimum() {
+    for stiffness in [1e2, 1e4, 1e6] {
+        let best = turning(stiffness).solve(SolverKind::SparseCholesky, 100, 1e-6).x;
+        let error = |rests: u32| {
+            let mut problem = turning(stiffness);
+            problem.system.rests = rests;
+            let x = problem.solve(SolverKind::SparseCholesky, 1, 1e-6).x;
+            best.iter().zip(&x).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+        };
+        let [inertia, rest] = [0, 1].map(error);
+        println!("{stiffness:e}: {inertia} m from where inertia leads, {rest} m from rest");
+        assert!(inertia < 0.5 * rest, "{stiffness:e}: {inertia} {rest}");
+    }
+}
+
+/// Vertices that fly apart lead to no good start; what is done from there does not count.
+#[test]
+fn a_start_that_proves_no_good_is_left() {
+    let mut left = 0;
+    for (seed, stiffness) in (0..8).flat_map(|seed| [10.0, 1e3, 1e5].map(|k| (seed, k))) {
+        for (max_iterations, speed) in [(1, 0.4), (1, 40.0), (4, 0.4), (4, 40.0)] {
+            let mut cloth = sheet([0.2, 0.1], [8, 4]);
+            for (i, v) in cloth.v.iter_mut().enumerate() {
+                let wave = |k: usize| ((i * 37 + k + 11 * seed) % 17) as f64 / 17.0 - 0.5;
+                *v = World3::new(wave(0), wave(5), wave(9)) * speed;
+            }
+            let mut problem = Problem::new(cloth, fabric(stiffness, 1e-5, None), 0.01);
+            let Outcome { phi: [start, end], report, .. } =
+                problem.solve(SolverKind::SparseCholesky, max_iterations, 1e-9);
+            assert!(end < start, "{seed} {stiffness:e}: {start} → {end}");
+            let was_left = report.iterations > max_iterations;
+            assert_eq!(was_left, problem.system.rests > 0, "the next stages start at rest");
+            assert!(report.iterations <= 2 * max_iterations);
+            left += usize::from(was_left);
+        }
+    }
+    println!("{left} of 96 starts were left");
+    assert!((10..86).contains(&left), "{left} of 96: too few to tell");
+}
+
 /// A strip of some rigidity (N m), shortened by 3 % between its held ends in a step of `h`, uneven by
 /// `bump` (m).
 fn buckling(rigidity: f64, h: f64, bump: f64) -> Problem {
