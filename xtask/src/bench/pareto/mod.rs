@@ -47,6 +47,10 @@ const LATTICE: [usize; 2] = [25, 25];
 
 fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
     for scene in context.chosen(report, SCENES, |scene| scene.name) {
+        if context.options.quick && matches!(scene.cut, Cut::Garment) {
+            report.remark(&format!("pareto.{} is left out of quick runs.", scene.name));
+            continue;
+        }
         let part = format!("pareto/{}", scene.name);
         context.part(report, &part, |report| sweep(context, report, scene))?;
     }

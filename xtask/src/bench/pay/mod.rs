@@ -35,8 +35,8 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 
 /// Turns in which every variant runs once: a whole run, and a quick one.
 const TURNS: [usize; 2] = [31, 9];
-/// Frames of each run.
-const FRAMES: usize = 6;
+/// Frames of each run: whole, and quick.
+const FRAMES: [usize; 2] = [6, 2];
 /// Confidence of the intervals: among all parts one interval in fifteen misses by chance.
 const LEVEL: f64 = 0.99;
 /// What runs count, beside their times.
@@ -81,11 +81,12 @@ fn run(context: &Context, report: &mut Report) -> Result<(), Failure> {
 }
 
 fn one(context: &Context, report: &mut Report, part: &Part) -> Result<(), Failure> {
+    let frames = FRAMES[usize::from(context.options.quick)];
     let mut simulations = Vec::new();
     for (kind, text) in KINDS.into_iter().zip(part.scenes()) {
         let scene = context.scene(&format!("pay_{}_{kind}", part.name), &format!("{text:#}"))?;
         let out = scene.with_extension("mcap");
-        simulations.push(Simulation { scene, frames: FRAMES, sets: Vec::new(), out });
+        simulations.push(Simulation { scene, frames, sets: Vec::new(), out });
     }
     let (mut off, mut idle) = (Vec::new(), Vec::new());
     let mut infos: Vec<RunInfo> = Vec::new();

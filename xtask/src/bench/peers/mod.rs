@@ -90,7 +90,7 @@ impl Ours {
 }
 
 fn one(context: &Context, report: &mut Report, scene: &Scene) -> Result<(), Failure> {
-    let [reference, other] = scene.references();
+    let [reference, other] = scene.references(context.options.quick);
     let (truth, _) = follow(context, scene, &reference)?;
     if scene.name == here::SCENE {
         here::compare(report, &truth)?;

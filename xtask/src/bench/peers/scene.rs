@@ -85,9 +85,10 @@ impl Setting {
 
 impl Scene {
     /// Small second-order steps, solved well; and somewhat longer ones, as different from them as good
-    /// solutions are.
-    pub(super) fn references(&self) -> [Setting; 2] {
-        [self.reference, 3 * self.reference / 4].map(|substeps| {
+    /// solutions are. Twice as long in quick runs.
+    pub(super) fn references(&self, quick: bool) -> [Setting; 2] {
+        let finest = if quick { self.reference / 2 } else { self.reference };
+        [finest, 3 * finest / 4].map(|substeps| {
             let Setting { label, mut sets } = self.setting(SDIRK2, substeps, 20);
             sets.push("newton.tolerance=1e-3".into());
             Setting { label: format!("reference, {label}"), sets }

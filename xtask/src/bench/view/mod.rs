@@ -63,7 +63,7 @@ const SCENES: [Scene; 3] = [
         cloths: &["cloths[0]"],
         finest: 0.015,
         frames: [300, 12],
-        fixed_frames: [8, 2],
+        fixed_frames: [8, 0],
         starts: [[40, 280, 20], [0; 3]],
     },
     Scene {
