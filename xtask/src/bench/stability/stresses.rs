@@ -19,6 +19,11 @@ impl Stress {
         self.only.is_empty() || self.only.contains(&scene)
     }
 
+    /// Whether it is the mesh that it changes.
+    pub(super) fn remeshes(&self) -> bool {
+        self.only == ["adaptive"]
+    }
+
     const fn plain(name: &'static str, apply: fn(&mut Value)) -> Stress {
         Stress { name, apply, is_closed: true, is_stiffer: false, only: &[] }
     }
