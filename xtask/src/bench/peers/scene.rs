@@ -59,7 +59,7 @@ const DRAPE_NOTE: &str = "The sheet falls on a sphere of 0.25 m and touches itse
 pub(super) const SCENES: &[Scene] = &[
     hang("hang32", 31, 80, true),
     hang("hang64", 63, 20, false),
-    hang("hang128", 127, 12, false),
+    hang("hang128", 127, 8, false),
     drape("drape32", 31, 20),
     drape("drape64", 63, 16),
 ];
