@@ -87,13 +87,13 @@ fn hanging(context: &Context, report: &mut Report) -> Result<(), Failure> {
     let most = ratios.iter().copied().max_by(f64::total_cmp);
     let mean = (!ratios.is_empty()).then(|| ratios.iter().sum::<f64>() / ratios.len() as f64);
     for (what, value) in [("min", least), ("mean", mean), ("max", most)] {
-        let figure = value.and_then(|value| Figure::exact(value, "1", &note));
+        let figure = value.and_then(|value| Figure::median(&[value], "1", &note));
         report.add(&format!("arps.hanging.speedup.{what}"), figure);
     }
     let [fast, slow] = seconds.map(|each| each.iter().sum::<f64>());
     let whole = slow / fast;
     let note = "Wall time of the whole run without restraint over that with it.";
-    report.add("arps.hanging.speedup.whole", Figure::exact(whole, "1", note));
+    report.add("arps.hanging.speedup.whole", Figure::median(&[whole], "1", note));
     let awake =
         restrained.info.sum("/restraint/stages") - restrained.info.sum("/restraint/stages_slept");
     let note = "Linear systems per stage of the hanging cloth that was not slept through.";
@@ -156,7 +156,7 @@ fn idle(context: &Context, report: &mut Report) -> Result<(), Failure> {
         "Wall time of {frames} frames of the swinging cloth with restraint that restrains nobody over that \
          without, less 1; the fastest of 3 runs each."
     );
-    report.add("arps.idle_overhead", Figure::exact(least[0] / least[1] - 1.0, "1", &note));
+    report.add("arps.idle_overhead", Figure::median(&[least[0] / least[1] - 1.0], "1", &note));
     Ok(())
 }
 
@@ -200,10 +200,10 @@ fn crowd(context: &Context, report: &mut Report) -> Result<(), Failure> {
          the characters dances ({count}).{troubles}",
         STAND + 1
     );
-    let figure = Figure::exact(ratio(STAND, frames), "1", &note);
+    let figure = Figure::median(&[ratio(STAND, frames)], "1", &note);
     report.add("arps.resting_crowd.speedup", figure);
     let note = "The same over the whole run, of which all clothes fall into place in the first three fifths.";
-    report.add("arps.resting_crowd.speedup_whole", Figure::exact(ratio(0, frames), "1", note));
+    report.add("arps.resting_crowd.speedup_whole", Figure::median(&[ratio(0, frames)], "1", note));
     let scene = context.root.join("scenes/resting-crowd.json5").display().to_string();
     let variants = [
         count.clone(),
@@ -256,7 +256,7 @@ fn combined(context: &Context, report: &mut Report) -> Result<(), Failure> {
              processes over {frames} frames."
         );
         let name = if *kind == "both" { "combined" } else { *kind };
-        let figure = Figure::exact(cpu[0] / cpu[k], "1", &note);
+        let figure = Figure::median(&[cpu[0] / cpu[k]], "1", &note);
         report.add(&format!("arps.view.{name}_speedup"), figure);
         let note = format!(
             "RMS distance in the picture from the run with neither, {HORIZON} frames after both had the state \

@@ -13,6 +13,9 @@ use std::path::Path;
 const REPEATED: f64 = 1.1;
 /// The same for fewer runs: other load on a machine makes CPU seconds this much longer.
 const SINGLE: f64 = 1.6;
+/// By how much shares and exponents may differ besides, which can be near zero, with three runs or more
+/// and with fewer.
+const SLACK: [f64; 2] = [0.02, 0.1];
 /// The same for peaks of memory.
 const MEMORY: f64 = 1.05;
 /// The same for all else, which has the same bits in every run of one program.
@@ -136,8 +139,11 @@ fn numbers(report: &Report) -> Vec<(String, Figure)> {
 
 /// The change beyond noise; `None` if there is none.
 fn change(Pair { name, before, now }: &Pair) -> Option<Change> {
+    let is_single = before.n.min(now.n) < 3;
+    let is_share = now.of == Of::Runs && now.unit == "1";
+    let slack = if is_share { SLACK[usize::from(is_single)] } else { 0.0 };
     let widening = match (&*now.unit, now.of) {
-        ("s", _) | (_, Of::Runs) if before.n.min(now.n) < 3 => SINGLE,
+        ("s", _) | (_, Of::Runs) if is_single => SINGLE,
         ("s", _) | (_, Of::Runs) => REPEATED,
         ("MB" | "B", _) => MEMORY,
         _ => SAME,
@@ -148,7 +154,7 @@ fn change(Pair { name, before, now }: &Pair) -> Option<Change> {
         let [low, high] = [low.min(high), low.max(high)];
         // Away from zero upwards and towards it downwards, whatever the sign.
         let wider = |x: f64, up: bool| if (x > 0.0) == up { x * widening } else { x / widening };
-        [wider(low, false), wider(high, true)]
+        [wider(low, false) - slack, wider(high, true) + slack]
     };
     let ([old_low, old_high], [low, high]) = (bounds(before), bounds(now));
     // Written so that a number that has become none counts as different.
@@ -204,6 +210,10 @@ mod tests {
         assert_eq!(judge(&[2.5]), None);
         assert_eq!(judge(&[3.5]), Some(Change::Worse));
         assert_eq!(pair("a.share", Figure::exact(1.0, "s", ""), Figure::exact(2.5, "s", "")), None);
+        // What is near zero differs by many times itself.
+        let share = |x| Figure::median(&[x], "1", "");
+        assert_eq!(pair("a.overhead", share(0.004), share(-0.02)), None);
+        assert_eq!(pair("a.overhead", share(0.004), share(0.5)), Some(Change::Worse));
     }
 
     #[test]

@@ -102,16 +102,17 @@ fn by_view(context: &Context, report: &mut Report) -> Result<(), Failure> {
     ] {
         let [cpu_s, off, inside, outside, looking] = run.array::<5>(name)?;
         say(format!("  {name}: {:.2} times as fast, {off:.2} px off", free[0] / cpu_s));
-        let mut add = |figure: &str, value, unit, note: &str| {
-            let note = format!("{note} {what}");
-            report.add(&format!("sph.view.{figure}{of}"), Figure::exact(value, unit, &note));
-        };
-        add("speedup", free[0] / cpu_s, "1", &note);
-        add("pixel_error", off, "px", error);
+        let told = |note: &str| format!("{note} {what}");
+        let mut add = |figure: &str, made| report.add(&format!("sph.view.{figure}{of}"), made);
+        add("speedup", Figure::median(&[free[0] / cpu_s], "1", &told(&note)));
+        add("pixel_error", Figure::exact(off, "px", &told(error)));
         if name == "view" {
-            add("resting.in_picture", inside, "1", "Share of the particles in the picture.");
-            add("resting.outside", outside, "1", "Share of the particles out of it.");
-            add("overhead_fraction", looking / cpu_s, "1", "Time to look through the cameras.");
+            let share = "Share of the particles in the picture.";
+            add("resting.in_picture", Figure::exact(inside, "1", &told(share)));
+            let share = "Share of the particles out of it.";
+            add("resting.outside", Figure::exact(outside, "1", &told(share)));
+            let time = "Time to look through the cameras.";
+            add("overhead_fraction", Figure::median(&[looking / cpu_s], "1", &told(time)));
         }
     }
     let [_, floor, ..] = run.array::<5>("twin")?;
@@ -229,7 +230,7 @@ fn saving(
             "  {}: {:.2?}, error {:.2} floors",
             point.threshold, point.speedup, point.over
         ));
-        report.add(&figure("speedup"), Figure::exact(point.speedup[1], "1", &note));
+        report.add(&figure("speedup"), Figure::median(&[point.speedup[1]], "1", &note));
         let what = "The largest quotient of an error and the difference of two unrestrained seeds.";
         report.add(&figure("error_over_floor"), Figure::exact(point.over, "1", what));
     }
@@ -268,7 +269,7 @@ fn saving(
     );
     for (what, value) in ["min", "mean", "max"].into_iter().zip(chosen.speedup) {
         let figure = format!("sph.{name}.speedup.{what}");
-        report.add(&figure, Figure::exact(value, "1", &note));
+        report.add(&figure, Figure::median(&[value], "1", &note));
     }
     let quotient = |k: usize| chosen.error[k] / floor[k];
     let worst = (0..METRICS.len()).max_by(|&a, &b| quotient(a).total_cmp(&quotient(b)));

@@ -25,7 +25,7 @@ pub(super) fn run(context: &Context, report: &mut Report) -> Result<(), Failure>
             say(format!("  {mean:.3} CPU seconds a frame"));
             let note = "Whole process, one thread.";
             let name = format!("view.crowd.{count}.cpu_s_per_frame.{kind}");
-            report.add(&name, Figure::exact(mean, "s", note));
+            report.add(&name, Figure::median(&[mean], "s", note));
             Ok::<f64, Failure>(mean)
         };
         let speedup = seconds("adaptive", vec!["view=null".into()])? / seconds("view", Vec::new())?;
@@ -33,7 +33,7 @@ pub(super) fn run(context: &Context, report: &mut Report) -> Result<(), Failure>
             "CPU seconds of the adaptive run over those of the view-dependent one, {frames} frames, \
              one thread."
         );
-        report.add(&format!("view.crowd.{count}.speedup"), Figure::exact(speedup, "1", &note));
+        report.add(&format!("view.crowd.{count}.speedup"), Figure::median(&[speedup], "1", &note));
         points.push((*count as f64, speedup));
         context.save(report)?;
     }

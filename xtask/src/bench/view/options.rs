@@ -41,7 +41,7 @@ pub(super) fn run(context: &Context, report: &mut Report) -> Result<(), Failure>
             with.info.troubles()
         );
         let name = |what: &str| format!("view.option.{option}.{what}");
-        report.add(&name("cpu_ratio"), Figure::exact(cpu, "1", &note));
+        report.add(&name("cpu_ratio"), Figure::median(&[cpu], "1", &note));
         report.add(&name("faces_ratio"), Figure::exact(faces, "1", &note));
         context.save(report)?;
     }

@@ -40,7 +40,7 @@ pub(super) fn run(context: &Context, report: &mut Report, scene: &Scene) -> Resu
          {frames} frames, one thread.{}",
         view.info.troubles()
     );
-    report.add(&name("speedup"), Figure::exact(adaptive.cpu_s / view.cpu_s, "1", &note));
+    report.add(&name("speedup"), Figure::median(&[adaptive.cpu_s / view.cpu_s], "1", &note));
     if let Some(fixed) = &fixed {
         let seconds = fixed.cpu_s / fixed_frames as f64;
         let note = format!(
@@ -48,7 +48,7 @@ pub(super) fn run(context: &Context, report: &mut Report, scene: &Scene) -> Resu
              alone, over those of the view-dependent run.",
             scene.finest
         );
-        report.add(&name("speedup_over_fixed"), Figure::exact(seconds / fast, "1", &note));
+        report.add(&name("speedup_over_fixed"), Figure::median(&[seconds / fast], "1", &note));
     } else {
         report.remark(&format!("{} is left out of quick runs", name("speedup_over_fixed")));
     }
@@ -81,9 +81,9 @@ fn overhead(report: &mut Report, scene: &str, adaptive: &Measured, view: &Measur
     let share = (v.sum("/seconds/view") + bound) / v.sum("/seconds/total");
     let note =
         "View factors and the bound in pixels, as a share of the frames of the view-dependent run.";
-    report.add(&format!("view.{scene}.overhead_fraction"), Figure::exact(share, "1", note));
+    report.add(&format!("view.{scene}.overhead_fraction"), Figure::median(&[share], "1", note));
     // The whole benchmark's figure is that of its scene with the largest share.
     let name = "view.overhead_fraction";
     let worst = report.value(name).map_or(share, |before| before.max(share));
-    report.add(name, Figure::exact(worst, "1", "The largest over the scenes."));
+    report.add(name, Figure::median(&[worst], "1", "The largest over the scenes."));
 }
