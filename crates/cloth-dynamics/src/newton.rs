@@ -238,10 +238,9 @@ pub(crate) fn minimise(
 /// The start, its potential, and what to return to if it proves no good.
 ///
 /// Where inertia leads, most of what a step turns has been turned, so a single iteration from there is
-/// worth two from the start at rest (`hang` at steps of 40 ms: an error of 85 mm, not 142 mm). Stiff cloth
-/// is stretched there far above its potential at rest, so this start is on trial like a full step. What
-/// touches, is restrained or has strain limits has it only where it is the lower one: it may lie beyond
-/// what it touches and out of its limits.
+/// worth two from the start at rest. Stiff cloth is stretched there far above its potential at rest, so this
+/// start is on trial like a full step. What touches, is restrained or has strain limits has it only where it
+/// is the lower one: it may lie beyond what it touches and out of its limits.
 fn choose_start(
     system: &mut System,
     inertia: &Inertia<'_>,
