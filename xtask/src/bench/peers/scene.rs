@@ -44,7 +44,8 @@ const HANG: &[(&str, usize, usize)] = &[
     (SDIRK2, 3, 2),
     (SDIRK2, 5, 1),
 ];
-const DRAPE: &[(&str, usize, usize)] = &[(EULER, 4, 2), (EULER, 8, 2), (SDIRK2, 4, 2)];
+const DRAPE: &[(&str, usize, usize)] =
+    &[(SDIRK2, 2, 1), (EULER, 4, 1), (EULER, 4, 2), (EULER, 8, 2), (SDIRK2, 4, 2)];
 
 /// Friction as where the others have it.
 const ON_A_SPHERE: &[&str] = &["contact.friction=0.4", "obstacles[0].friction=0.4"];
