@@ -10,6 +10,8 @@ pub(super) struct Stress {
     pub(super) is_closed: bool,
     /// The cloth is stiffer than without it, so that it may not stretch more.
     pub(super) is_stiffer: bool,
+    /// Takes long on the scene with contact.
+    pub(super) is_slow: bool,
     /// The only scenes that it can be put to; empty for all.
     only: &'static [&'static str],
 }
@@ -25,7 +27,7 @@ impl Stress {
     }
 
     const fn plain(name: &'static str, apply: fn(&mut Value)) -> Stress {
-        Stress { name, apply, is_closed: true, is_stiffer: false, only: &[] }
+        Stress { name, apply, is_closed: true, is_stiffer: false, is_slow: false, only: &[] }
     }
 
     const fn stiffer(name: &'static str, apply: fn(&mut Value)) -> Stress {
@@ -59,8 +61,11 @@ pub(super) const ALL: &[Stress] = &[
     Stress::plain("one iteration", |s| {
         s["newton"] = json!({ "max_iterations": 1, "tolerance": 0.1 });
     }),
-    Stress::plain("twice as large as its pattern", |s| begin_as(s, "stretched.obj"))
-        .only(&["hang", "drape"]),
+    Stress {
+        is_slow: true,
+        ..Stress::plain("twice as large as its pattern", |s| begin_as(s, "stretched.obj"))
+            .only(&["hang", "drape"])
+    },
     Stress::plain("inverted", |s| begin_as(s, "inverted.obj")).only(&["hang", "drape"]),
     Stress::plain("crumpled", |s| begin_as(s, "crumpled.obj")).only(&["hang"]),
     Stress::plain("spinning at 100 rad/s", |s| {

@@ -56,7 +56,7 @@ const SCENES: [Scene; 3] = [
         finest: 0.013,
         frames: [240, 4],
         fixed_frames: [4, 1],
-        starts: [[50, 110, 15], [3, 4, 2]],
+        starts: [50, 110, 15],
     },
     Scene {
         name: "dancer",
@@ -64,7 +64,7 @@ const SCENES: [Scene; 3] = [
         finest: 0.015,
         frames: [300, 12],
         fixed_frames: [8, 0],
-        starts: [[40, 280, 20], [0; 3]],
+        starts: [40, 280, 20],
     },
     Scene {
         name: "dancers",
@@ -72,7 +72,7 @@ const SCENES: [Scene; 3] = [
         finest: 0.015,
         frames: [300, 3],
         fixed_frames: [2, 0],
-        starts: [[20, 50, 15], [0; 3]],
+        starts: [20, 50, 15],
     },
 ];
 
@@ -87,8 +87,8 @@ struct Scene {
     frames: [usize; 2],
     /// The same on a fixed mesh; 0 for no such run.
     fixed_frames: [usize; 2],
-    /// First and last frame from which short runs start, and their distance; 0 for no such runs.
-    starts: [[usize; 3]; 2],
+    /// First and last frame from which short runs start, and their distance.
+    starts: [usize; 3],
 }
 
 impl Scene {

@@ -17,21 +17,19 @@ fn numbers(told: &Value, key: &str) -> Vec<f64> {
 
 /// Error, floor and popping of a scene.
 pub(super) fn error(context: &Context, report: &mut Report, scene: &Scene) -> Result<(), Failure> {
-    let quick = context.options.quick;
-    let [first, last, every] = scene.starts[usize::from(quick)];
-    if every == 0 {
+    if context.options.quick {
         report.remark(&format!("Errors in pixels of {} are left out of quick runs.", scene.name));
         return Ok(());
     }
     say(format!("{}: error in pixels", scene.name));
-    let horizon = if quick { 1 } else { HORIZON };
+    let [first, last, every] = scene.starts;
     let arguments = [
         "error".to_owned(),
         scene.path(context).display().to_string(),
         first.to_string(),
         last.to_string(),
         every.to_string(),
-        horizon.to_string(),
+        HORIZON.to_string(),
     ];
     let told = ask(&context.program, &arguments)?;
     let whole = format!(
@@ -39,10 +37,10 @@ pub(super) fn error(context: &Context, report: &mut Report, scene: &Scene) -> Re
          scene, over frames from {first} to {last}; the spread is from frame to frame."
     );
     let short = format!(
-        "The same {horizon} frames after both runs had the same state, that of the adaptive run."
+        "The same {HORIZON} frames after both runs had the same state, that of the adaptive run."
     );
     let onward = format!(
-        "The same {horizon} frames after both runs had the same state, that of the view-dependent run."
+        "The same {HORIZON} frames after both runs had the same state, that of the view-dependent run."
     );
     let (error, floor) = (
         "Runs: view-dependent and adaptive.",
