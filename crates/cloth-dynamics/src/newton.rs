@@ -14,9 +14,11 @@ use crate::system::System;
 use mesh_core::{World3, par};
 use nalgebra::Matrix3;
 use restrained::{Directions, Restrained};
+use start::REST_STARTS;
 use std::time::Instant;
 
 pub(crate) mod restrained;
+mod start;
 #[cfg(test)]
 mod tests;
 
@@ -73,8 +75,6 @@ const SLOW: f64 = 0.3;
 const PROJECTED_ITERATIONS: usize = 3;
 /// Share of the residual of a failed try with the exact Hessian at which it is tried again.
 const EXACT_AGAIN: f64 = 0.1;
-/// Stages that start at rest unasked after one that did so by choice.
-const REST_STARTS: u32 = 7;
 /// Iterations are allowed up to this multiple of the limit while triangles are out of their strain
 /// limits, or cloth has come through what it touches.
 const PATIENCE: usize = 3;
@@ -182,7 +182,7 @@ pub(crate) fn minimise(
     settings: &NewtonSettings,
 ) -> Result<Minimum, SolveError> {
     let clock = Instant::now();
-    let (x, phi, lowest) = choose_start(system, inertia, starts)?;
+    let (x, phi, lowest) = start::choose(system, inertia, starts)?;
     let energy_s = clock.elapsed().as_secs_f64();
     let report = SolveReport { stages: 1, residual: f64::INFINITY, energy_s, ..Default::default() };
     let mut newton = Newton {
@@ -233,41 +233,6 @@ pub(crate) fn minimise(
     let Newton { x, model, bent, report, .. } = newton;
     let p = model.filter(|model| model.x == x).map(|model| model.p);
     Ok(Minimum { x, p, bent, report })
-}
-
-/// The start, its potential, and what to return to if it proves no good.
-///
-/// Where inertia leads, most of what a step turns has been turned, so a single iteration from there is
-/// worth two from the start at rest. Stiff cloth is stretched there far above its potential at rest, so this
-/// start is on trial like a full step. What touches, is restrained or has strain limits has it only where it
-/// is the lower one: it may lie beyond what it touches and out of its limits.
-fn choose_start(
-    system: &mut System,
-    inertia: &Inertia<'_>,
-    [resting, ballistic]: &[Vec<World3>; 2],
-) -> Result<(Vec<World3>, f64, Watchdog), SolveError> {
-    let phi = inertia.potential(system, resting);
-    // One step resembles the next: where it is better to start at rest, the other start is looked at
-    // only now and then.
-    if system.rests > 0 && phi.is_finite() {
-        system.rests -= 1;
-        return Ok((resting.clone(), phi, Watchdog::default()));
-    }
-    let other = inertia.potential(system, ballistic);
-    if other < phi || (other.is_finite() && !phi.is_finite()) {
-        return Ok((ballistic.clone(), other, Watchdog::default()));
-    }
-    if !phi.is_finite() {
-        return Err(SolveError::NotFinite { time: inertia.time, h: inertia.h });
-    }
-    let is_bound =
-        system.contact.is_some() || system.limits.is_some() || inertia.restrained.is_some();
-    if !is_bound && other.is_finite() {
-        let lowest = Watchdog { age: 1, phi, x: resting.clone(), ..Watchdog::default() };
-        return Ok((ballistic.clone(), other, lowest));
-    }
-    system.rests = REST_STARTS;
-    Ok((resting.clone(), phi, Watchdog::default()))
 }
 
 impl Newton<'_> {
