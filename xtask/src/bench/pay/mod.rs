@@ -34,7 +34,7 @@ pub(super) const BENCHMARK: Benchmark = Benchmark {
 };
 
 /// Turns in which every variant runs once: a whole run, and a quick one.
-const TURNS: [usize; 2] = [31, 9];
+const TURNS: [usize; 2] = [31, 8];
 /// Frames of each run: whole, and quick.
 const FRAMES: [usize; 2] = [6, 2];
 /// Confidence of the intervals: among all parts one interval in fifteen misses by chance.
