@@ -66,7 +66,7 @@ fn simulate(
 
 /// The hanging cloth with and without restraint.
 fn hanging(context: &Context, report: &mut Report) -> Result<(), Failure> {
-    let frames = if context.options.quick { PUSHED / 4 } else { 750 };
+    let frames = if context.options.quick { PUSHED / 2 } else { 750 };
     let restrained = simulate(context, "hanging-cloth", frames, "restrained", &[])?;
     let plain = simulate(context, "hanging-cloth", frames, "plain", &["restraint=null"])?;
     let mut seconds = [&restrained, &plain].map(|run| run.info.each("/seconds/total"));
