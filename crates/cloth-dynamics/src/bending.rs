@@ -4,9 +4,9 @@
 //!
 //! The full stiffness of a triangle couples six vertices, so every vertex with the two rings around
 //! it: twice the blocks that the membrane needs, and three to seven times the work of a factorisation.
-//! Where the stage is not too long for the bending, r = K h²/(m height²), inertia and tension carry the
-//! matrix, and the coupling may be rounded up to one that stays within the triangles (a majoriser, so that every
-//! step remains a descent):
+//! Where the stage is not too long for the bending, r = K h²/(m height²), inertia and tension carry
+//! the matrix, and the coupling may be rounded up to one that stays within the triangles (a
+//! majoriser, so that every step remains a descent):
 //!
 //!   Σ_kl G_kl ∇θ_k ∇θ_lᵀ  ⪯  Σ_k K_k ∇θ_k ∇θ_kᵀ,             K_k = Σ_l |G_kl|       (Gershgorin)
 //!   ∇θ ∇θᵀ  ⪯  ∇θ ∇θᵀ + w wᵀ,     w = (0, 0, ∇_c θ, −∇_d θ)

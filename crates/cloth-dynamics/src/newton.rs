@@ -332,27 +332,33 @@ impl Newton<'_> {
         } else if self.phi.is_finite() && lowest.age < watch && !is_last {
             lowest.age += 1;
         } else {
-            self.halve();
+            if lowest.direction.is_empty() {
+                self.begin_again();
+            } else {
+                self.halve();
+            }
             return false;
         }
         std::mem::swap(&mut self.x, &mut self.trial);
         true
     }
 
+    /// Returns to the start at rest from one on trial that came to nothing.
+    fn begin_again(&mut self) {
+        self.system.rests = REST_STARTS;
+        self.began_again = true;
+        self.lowest.age = 0;
+        self.x.clone_from(&self.lowest.x);
+        self.phi = self.lowest.phi;
+        self.system.predict(&self.x, &vec![World3::zeros(); self.x.len()]);
+    }
+
     /// Returns to the lowest point and follows its direction by halves until the potential has fallen
-    /// enough; stays there if it does not, or if it is the start at rest.
+    /// enough; stays there if it does not.
     fn halve(&mut self) {
         let lowest = &mut self.lowest;
         let mut share = 1.0;
         lowest.age = 0;
-        if lowest.direction.is_empty() {
-            self.system.rests = REST_STARTS;
-            self.began_again = true;
-            self.x.clone_from(&lowest.x);
-            self.phi = lowest.phi;
-            self.system.predict(&self.x, &vec![World3::zeros(); self.x.len()]);
-            return;
-        }
         for _ in 0..MAX_HALVINGS {
             share *= 0.5;
             par::for_each(&mut lowest.direction, |_, d| *d *= 0.5);

@@ -74,8 +74,8 @@ pub(crate) const MOMENT: f64 = 1e-12;
 
 impl System {
     /// Builds the forces that the fabrics and the environment call for, and the matrix pattern.
-    /// Implicit stages will be about `h` long (s), which decides how finely the stiffness is worked out, never
-    /// what the forces are.
+    /// Implicit stages will be about `h` long (s), which decides how finely the stiffness is worked out,
+    /// never what the forces are.
     ///
     /// # Errors
     /// If the matrix would be too large for its indices.

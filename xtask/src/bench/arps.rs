@@ -190,9 +190,9 @@ const HORIZON: usize = 3;
 /// The crowd of which a tenth moves.
 fn crowd(context: &Context, report: &mut Report) -> Result<(), Failure> {
     let frames = STAND + 50;
-    let count = "crowd.count=100".to_owned();
-    let restrained = simulate(context, "resting-crowd", frames, "restrained", &[&count])?;
-    let plain = simulate(context, "resting-crowd", frames, "plain", &[&count, "restraint=null"])?;
+    let count = "crowd.count=100";
+    let restrained = simulate(context, "resting-crowd", frames, "restrained", &[count])?;
+    let plain = simulate(context, "resting-crowd", frames, "plain", &[count, "restraint=null"])?;
     let [fast, slow] = [&restrained, &plain].map(|run| run.info.each("/seconds/total"));
     let ratio = |from: usize, to: usize| {
         slow[from..to].iter().sum::<f64>() / fast[from..to].iter().sum::<f64>()
@@ -209,9 +209,9 @@ fn crowd(context: &Context, report: &mut Report) -> Result<(), Failure> {
     report.add("arps.resting_crowd.speedup_whole", Figure::median(&[ratio(0, frames)], "1", note));
     let scene = context.root.join("scenes/resting-crowd.json5").display().to_string();
     let variants = [
-        count.clone(),
+        count.to_owned(),
         format!("{count}&&restraint=null"),
-        count.clone(),
+        count.to_owned(),
         format!("{count}&&restraint=null&&newton.tolerance=0.01&&newton.max_iterations=12"),
     ];
     let errors = against(context, report, &scene, STAND + 5, &variants)?;

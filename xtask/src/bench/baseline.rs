@@ -13,8 +13,8 @@ use std::path::Path;
 const REPEATED: f64 = 1.1;
 /// The same for fewer runs: other load on a machine makes CPU seconds this much longer.
 const SINGLE: f64 = 1.6;
-/// By how much shares and exponents may differ besides, which can be near zero, with three runs or more
-/// and with fewer.
+/// By how much what times differ by and exponents, which can be near zero, may be apart besides, with three
+/// runs or more and with fewer.
 const SLACK: [f64; 2] = [0.02, 0.1];
 /// The same for peaks of memory.
 const MEMORY: f64 = 1.05;
@@ -140,8 +140,10 @@ fn numbers(report: &Report) -> Vec<(String, Figure)> {
 /// The change beyond noise; `None` if there is none.
 fn change(Pair { name, before, now }: &Pair) -> Option<Change> {
     let is_single = before.n.min(now.n) < 3;
-    let is_share = now.of == Of::Runs && now.unit == "1";
-    let slack = if is_share { SLACK[usize::from(is_single)] } else { 0.0 };
+    let is_near_zero =
+        ["overhead", "difference", "exponent"].iter().any(|word| name.contains(word));
+    let slack =
+        if is_near_zero && now.of == Of::Runs { SLACK[usize::from(is_single)] } else { 0.0 };
     let widening = match (&*now.unit, now.of) {
         ("s", _) | (_, Of::Runs) if is_single => SINGLE,
         ("s", _) | (_, Of::Runs) => REPEATED,
@@ -214,6 +216,7 @@ mod tests {
         let share = |x| Figure::median(&[x], "1", "");
         assert_eq!(pair("a.overhead", share(0.004), share(-0.02)), None);
         assert_eq!(pair("a.overhead", share(0.004), share(0.5)), Some(Change::Worse));
+        assert_eq!(pair("a.ratio", share(0.01), share(0.05)), Some(Change::Worse));
     }
 
     #[test]

@@ -66,9 +66,9 @@ fn one(
     let mut rows = Vec::new();
     let mut plain: Option<Findings> = None;
     for stress in stresses::ALL.iter().filter(|stress| stress.suits(scene.name)) {
-        if context.options.quick && stress.is_slow && scene.name == "drape" {
-            let Stress { name, .. } = stress;
-            report.remark(&format!("stability: drape {name} is left out of quick runs."));
+        if context.options.quick && stress.is_slow_on(scene.name) {
+            let cell = format!("{} {}", scene.name, stress.name);
+            report.remark(&format!("stability: {cell} is left out of quick runs."));
             continue;
         }
         let simulation = simulation(context, scene, stress, folder)?;
@@ -104,10 +104,10 @@ fn simulation(
     let mut text = (scene.text)();
     (stress.apply)(&mut text);
     text["name"] = Value::from(format!("{}, {}", scene.name, stress.name));
-    // As long in simulated time, whatever the frame rate.
     // Energy lost and found in remeshing is small only beside that of some way fallen.
     let is_short = context.options.quick && !stress.remeshes();
     let frames = if is_short { 2.0 } else { 15.0 };
+    // As long in simulated time, whatever the frame rate.
     let frame_rate = text["frames_per_second"].as_f64().unwrap_or(25.0);
     let frames = (frames * frame_rate / 25.0).ceil().max(2.0) as usize;
     text["frames"] = Value::from(frames);

@@ -10,8 +10,8 @@ pub(super) struct Stress {
     pub(super) is_closed: bool,
     /// The cloth is stiffer than without it, so that it may not stretch more.
     pub(super) is_stiffer: bool,
-    /// Takes long on the scene with contact.
-    pub(super) is_slow: bool,
+    /// The scene on which it takes long; empty for none.
+    slow_on: &'static str,
     /// The only scenes that it can be put to; empty for all.
     only: &'static [&'static str],
 }
@@ -21,13 +21,18 @@ impl Stress {
         self.only.is_empty() || self.only.contains(&scene)
     }
 
+    /// Whether quick runs are without it.
+    pub(super) fn is_slow_on(&self, scene: &str) -> bool {
+        self.slow_on == scene
+    }
+
     /// Whether it is the mesh that it changes.
     pub(super) fn remeshes(&self) -> bool {
         self.only == ["adaptive"]
     }
 
     const fn plain(name: &'static str, apply: fn(&mut Value)) -> Stress {
-        Stress { name, apply, is_closed: true, is_stiffer: false, is_slow: false, only: &[] }
+        Stress { name, apply, is_closed: true, is_stiffer: false, slow_on: "", only: &[] }
     }
 
     const fn stiffer(name: &'static str, apply: fn(&mut Value)) -> Stress {
@@ -62,7 +67,7 @@ pub(super) const ALL: &[Stress] = &[
         s["newton"] = json!({ "max_iterations": 1, "tolerance": 0.1 });
     }),
     Stress {
-        is_slow: true,
+        slow_on: "drape",
         ..Stress::plain("twice as large as its pattern", |s| begin_as(s, "stretched.obj"))
             .only(&["hang", "drape"])
     },
