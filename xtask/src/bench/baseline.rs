@@ -13,8 +13,8 @@ use std::path::Path;
 const REPEATED: f64 = 1.1;
 /// The same for fewer runs: other load on a machine makes CPU seconds this much longer.
 const SINGLE: f64 = 1.6;
-/// By how much what times differ by and exponents, which can be near zero, may be apart besides, with three
-/// runs or more and with fewer.
+/// By how much the bounds of overheads, differences and exponents, which can be near zero, are widened
+/// besides on either side, with three runs or more and with fewer.
 const SLACK: [f64; 2] = [0.02, 0.1];
 /// The same for peaks of memory.
 const MEMORY: f64 = 1.05;
